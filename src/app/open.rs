@@ -85,7 +85,7 @@ pub(super) fn run(args: &OpenArgs, keymap: Keymap) -> Result<u8, AppError> {
     let flown_hash = flown.hash;
     let Flown { flight, timeline, recorded: Recorded { events, past }, kept_flight, .. } = flown;
     let end = flight.vehicle().time();
-    let again = kept_flight.map(|past| FlyAgain::of(past));
+    let again = kept_flight.map(FlyAgain::of);
     let kept = Kept::open(args, flown_hash, &mut notices);
     let show = kept.instant_or(instant(args.at, flight.trace().engaged_at, end)?, end);
     notices.push(format!("{name}, seed {}, was flown to its end: {}.", air.seed, ways_to_go(args.plain)));

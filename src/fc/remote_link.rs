@@ -11,13 +11,11 @@
 //! [`RemoteLink::exchange`] is called between two steps and does not block. In simulated time it waits for the step of the
 //! executable, for a short time at most.
 
-use std::collections::VecDeque;
-use std::path::PathBuf;
-use std::sync::Arc;
 use std::task::{Context, Poll};
 use std::time::{Duration, Instant};
 
 use super::feed::Feed;
+use super::kept_flight::{Copies, KeptFlight, place_of};
 use super::observer::Simulated;
 use super::remote::{Craft, Event, Input};
 use super::self_check::SelfCheck;
@@ -25,12 +23,12 @@ use super::stepped::{StepEvent, Stepped};
 use super::{Remote, RemoteNotice, RemoteState, rescue};
 use crate::geo::LocalFrame;
 use crate::link::endpoint::EndpointStatus;
-use crate::link::lockstep::{KeptRun, Lockstep, NotAgain};
+use crate::link::lockstep::Lockstep;
 use crate::link::proto::sitl_feed::FeedConfig;
 use crate::link::{ChildEvent, FcStream, SitlChild, SitlPeer, StreamEvent};
 use crate::signals::SimTime;
 use crate::storage::state_file;
-use crate::vehicle::{RemoteController, Vehicle, VehicleCommand};
+use crate::vehicle::{Vehicle, VehicleCommand};
 
 /// The wall time before the next question to a flight controller that is not ready.
 const QUESTION_PAUSE: Duration = Duration::from_millis(5);
@@ -43,9 +41,6 @@ const MAX_EVENTS: usize = 64;
 /// not hold up the craft. Unread data holds up the peer.
 const MAX_READ: usize = 64;
 const MAX_BYTES: usize = 8 * 1024;
-/// The time between two copies of the protocol for flights from earlier instants, and the most copies.
-const KEPT_EVERY: Duration = Duration::from_secs(1);
-const MOST_KEPT: usize = 3600;
 /// The greatest distance between the first fixes of two real craft for which the drawing keeps its origin, m.
 const SAME_FIELD_M: f64 = 1000.0;
 
@@ -68,18 +63,10 @@ pub struct RemoteLink {
     ends: Ends,
     started: Instant,
     notices: Vec<RemoteNotice>,
-    /// The protocol at earlier steps of this run of an executable whose inputs are kept, oldest first.
-    earlier: VecDeque<Earlier>,
+    /// The protocol at earlier steps of this run of an executable whose inputs are kept.
+    earlier: Copies,
     /// The time of the vehicle of the newest step.
     stepped_at: SimTime,
-}
-
-/// The protocol after a step, and the time of the link then.
-#[derive(Debug, Clone)]
-struct Earlier {
-    step: u64,
-    elapsed: Duration,
-    remote: Arc<Remote>,
 }
 
 /// The ends of the link, by the clock of the flight controller.
@@ -109,7 +96,7 @@ impl RemoteLink {
             ends: Ends::Wall { stream, feed: peer.map(Feed::new), child },
             started: now,
             notices: Vec::new(),
-            earlier: VecDeque::new(),
+            earlier: Copies::default(),
             stepped_at: SimTime::ZERO,
         }
     }
@@ -118,18 +105,17 @@ impl RemoteLink {
     pub fn in_steps(name: String, lockstep: Lockstep, feed: FeedConfig, now: Instant) -> Self {
         let place = place_of(&lockstep);
         let craft = Craft { name, place, bytes_per_s: None, is_fed: true, is_child: true, is_in_steps: true };
-        Self::of_steps(Remote::new(craft, Duration::ZERO), Stepped::new(lockstep, feed), now)
+        let ends = (Remote::new(craft, Duration::ZERO), Stepped::new(lockstep, feed));
+        Self::of_steps(ends, (Copies::default(), SimTime::ZERO), now)
     }
 
-    fn of_steps(remote: Remote, steps: Stepped, now: Instant) -> Self {
-        Self {
-            remote,
-            ends: Ends::Steps(steps),
-            started: now,
-            notices: Vec::new(),
-            earlier: VecDeque::new(),
-            stepped_at: SimTime::ZERO,
-        }
+    /// Continues with an executable in simulated time after its newest step, at this time of the vehicle.
+    pub(super) fn of_steps(
+        (remote, steps): (Remote, Stepped),
+        (earlier, stepped_at): (Copies, SimTime),
+        now: Instant,
+    ) -> Self {
+        Self { remote, ends: Ends::Steps(steps), started: now, notices: Vec::new(), earlier, stepped_at }
     }
 
     /// Returns `true` if its flight since its boot can be flown again.
@@ -297,14 +283,11 @@ impl RemoteLink {
 
     /// Keeps the protocol once in a while, for a flight from an earlier instant.
     fn keep_earlier(&mut self) {
-        let Ends::Steps(steps) = &self.ends else { return };
-        let (step, elapsed) = (steps.of_run(), steps.elapsed());
-        let is_due = self.earlier.back().is_none_or(|kept| elapsed >= kept.elapsed + KEPT_EVERY);
-        if steps.keeps_past() && !steps.is_busy() && is_due {
-            if self.earlier.len() == MOST_KEPT {
-                self.earlier.pop_front();
-            }
-            self.earlier.push_back(Earlier { step, elapsed, remote: Arc::new(self.remote.clone()) });
+        if let Ends::Steps(steps) = &self.ends
+            && steps.keeps_past()
+            && !steps.is_busy()
+        {
+            self.earlier.keep(steps.of_run(), steps.elapsed(), &self.remote);
         }
     }
 
@@ -483,74 +466,6 @@ impl RemoteLink {
             self.remote.deliver(mailbox, frame.as_ref(), simulated);
         }
     }
-}
-
-/// Returns the address of the serial port of an executable in simulated time, for sentences.
-fn place_of(lockstep: &Lockstep) -> String {
-    format!("the serial port of process {}", lockstep.id())
-}
-
-/// The flight of an executable since its boot. It can be flown again to any of its steps.
-#[derive(Debug, Clone)]
-pub struct KeptFlight {
-    run: KeptRun,
-    feed: FeedConfig,
-    /// The steps of the run, and the times of the link and of the vehicle after them.
-    steps: u64,
-    elapsed: Duration,
-    end: SimTime,
-    earlier: VecDeque<Earlier>,
-}
-
-impl KeptFlight {
-    /// Lets a second process, in an empty folder, compute the flight up to this time of the vehicle. `goes_on` gets the time
-    /// of the vehicle so far.
-    ///
-    /// # Errors
-    /// Returns the reason if that is before the boot, if the flight is not the same again, or if `goes_on` returns `false`.
-    pub fn fly(
-        &self,
-        until: SimTime,
-        folder: PathBuf,
-        now: Instant,
-        mut goes_on: impl FnMut(SimTime) -> bool,
-    ) -> Result<RemoteLink, NotAgain> {
-        let step = self.run.step_length();
-        let before_end = Duration::from_micros(self.end.0.saturating_sub(until.0));
-        let back = (before_end.as_nanos() / step.as_nanos().max(1)) as u64;
-        let steps = self.steps.checked_sub(back).ok_or(NotAgain::BeforeBoot)?;
-        let kept = self.earlier.iter().rev().find(|kept| kept.step <= steps);
-        let kept = kept.filter(|_| steps <= self.run.steps).ok_or(NotAgain::NotKept)?;
-        let (mut remote, mut mailbox) = (Remote::clone(&kept.remote), RemoteController::default());
-        let time = |of: u64| self.elapsed.saturating_sub(times(step, self.steps.saturating_sub(of)));
-        let follow = |done: u64, bytes: &[u8]| {
-            if done > kept.step {
-                // What it sends and reports now was sent and reported then.
-                remote.handle_timeout(time(done - 1));
-                while remote.poll_transmit().is_some() {}
-                if !bytes.is_empty() {
-                    remote.handle(Input::Received(bytes), time(done));
-                }
-                while remote.poll_event().is_some() {}
-                remote.deliver(&mut mailbox, None, None);
-            }
-            let left = times(step, steps.saturating_sub(done));
-            goes_on(SimTime(until.0.saturating_sub(left.as_micros() as u64)))
-        };
-        let (lockstep, newest) = self.run.clone().compute(steps, folder, follow)?;
-        let mut remote = remote.at(place_of(&lockstep));
-        let mut earlier = self.earlier.clone();
-        earlier.retain(|kept| kept.step <= steps);
-        // Requests since the copy are unknown here.
-        remote.outdate_settings(time(steps));
-        let newest = newest.as_ref().map(|packet| &packet[..]);
-        let steps = Stepped::resumed(lockstep, self.feed, time(steps), newest);
-        Ok(RemoteLink { stepped_at: until, earlier, ..RemoteLink::of_steps(remote, steps, now) })
-    }
-}
-
-fn times(step: Duration, count: u64) -> Duration {
-    step * u32::try_from(count).unwrap_or(u32::MAX)
 }
 
 /// Returns `true` if a drawing around one place also shows the other undistorted.

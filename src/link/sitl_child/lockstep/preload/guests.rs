@@ -9,7 +9,8 @@ use core::sync::atomic::Ordering::SeqCst;
 use core::sync::atomic::{AtomicBool, AtomicPtr, AtomicU32, AtomicUsize};
 
 use super::libc::{
-    Context, SET_MASK, SIGNAL_WORDS, Scope, getcontext, makecontext, pthread_sigmask, real, setcontext, swapcontext, wait_for_change, wait_until, wake,
+    Context, SET_MASK, SIGNAL_WORDS, Scope, getcontext, makecontext, pthread_sigmask, real, setcontext,
+    swapcontext, wait_for_change, wait_until, wake,
 };
 use super::local::{local_data, set_local_data};
 use super::parent::page;
@@ -144,9 +145,8 @@ pub(crate) fn create(
 
 /// Lets a guest run to its end, because the main thread waits for it.
 pub(crate) fn finish(thread: usize) {
-    let is_this = |guest: &&Guest| {
-        guest.state.load(SeqCst) == SLEEPING && guest.thread.load(SeqCst) == thread
-    };
+    let is_this =
+        |guest: &&Guest| guest.state.load(SeqCst) == SLEEPING && guest.thread.load(SeqCst) == thread;
     if let Some(guest) = ALL.iter().find(is_this) {
         while !guest.is_over.load(SeqCst) {
             guest.enter();

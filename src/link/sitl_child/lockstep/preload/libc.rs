@@ -184,7 +184,9 @@ pub(crate) fn wait_for_change(word: &AtomicU32, value: u32) {
 pub(crate) fn wait_for_grant(word: &AtomicU32, value: u32) {
     let second = Timespec { s: 1, ns: 0 };
     // SAFETY: the word lives as long as the program, and the time as long as the call.
-    unsafe { syscall(SYS_FUTEX, word.as_ptr(), FUTEX_WAIT | Scope::Shared as c_int, value, &raw const second) };
+    unsafe {
+        syscall(SYS_FUTEX, word.as_ptr(), FUTEX_WAIT | Scope::Shared as c_int, value, &raw const second)
+    };
 }
 
 pub(crate) fn wait_until(word: &AtomicU32, value: u32) {

@@ -8,9 +8,7 @@ use super::RUN;
 use super::clock::NOW_NS;
 use super::frames::{MOTOR_BYTES, Page, Report};
 use super::intake::{FDM, RC};
-use super::libc::{
-    _exit, MAP_SHARED, READABLE_WRITABLE, Scope, getppid, mmap, wait_for_grant, wake,
-};
+use super::libc::{_exit, MAP_SHARED, READABLE_WRITABLE, Scope, getppid, mmap, wait_for_grant, wake};
 use super::serial::{SERIAL, serve_serial};
 
 /// The memory that the parent shares; null = the library does nothing.

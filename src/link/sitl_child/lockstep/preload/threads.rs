@@ -82,7 +82,9 @@ pub unsafe extern "C" fn pthread_join(thread: usize, result: *mut *mut c_void) -
     guests::finish(thread);
     loop {
         // A wake-up before the thread waits has no effect, so it is repeated.
-        [&FDM.place, &RC.place, &SERIAL.place].map(|place| place.wake());
+        for place in [&FDM.place, &RC.place, &SERIAL.place] {
+            place.wake();
+        }
         let mut until = Timespec { s: 0, ns: 0 };
         real!(clock_gettime: fn(c_int, *mut Timespec) -> c_int; CLOCK_REALTIME, &raw mut until);
         until.ns += MILLISECOND_NS;
