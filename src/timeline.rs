@@ -66,7 +66,7 @@ impl Timeline {
         })
     }
 
-    /// Returns `true` if only pictures are kept: another vehicle must fly so far to continue from an earlier instant.
+    /// Returns `true` if only pictures are kept. To continue from one, a remote flight controller must compute so far again.
     pub fn is_pictures(&self) -> bool {
         self.is_pictures
     }
@@ -160,8 +160,8 @@ impl Timeline {
         self.replay = None;
     }
 
-    /// Continues from the shown instant of a flight that is kept as pictures, on a new branch, with another vehicle that has
-    /// flown so far. Forgets the recording after it. Returns the vehicle of the picture; `None` if no earlier instant is shown.
+    /// Continues from the picture that is shown, on a new branch. Forgets the recording after it. Returns the vehicle of the
+    /// picture; `None` if no earlier instant is shown.
     pub fn continue_pictures(&mut self) -> Option<Vehicle> {
         let replay = self.replay.take_if(|_| self.is_pictures)?;
         self.branch_from(&replay);

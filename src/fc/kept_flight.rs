@@ -92,7 +92,7 @@ impl KeptFlight {
         let time = |of: u64| self.elapsed.saturating_sub(times(step, self.steps.saturating_sub(of)));
         let follow = |done: u64, bytes: &[u8]| {
             if done > kept.step {
-                // What it sends and reports now was sent and reported then.
+                // The first flight has sent and reported the same.
                 remote.handle_timeout(time(done - 1));
                 while remote.poll_transmit().is_some() {}
                 if !bytes.is_empty() {

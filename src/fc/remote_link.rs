@@ -127,7 +127,7 @@ impl RemoteLink {
     pub fn past(&mut self) -> Option<KeptFlight> {
         let Ends::Steps(steps) = &mut self.ends else { return None };
         let (run, feed) = steps.past()?;
-        let (steps, elapsed) = (steps.of_run(), steps.elapsed());
+        let (steps, elapsed) = (steps.steps_of_run(), steps.elapsed());
         Some(KeptFlight { run, feed, steps, elapsed, end: self.stepped_at, earlier: self.earlier.clone() })
     }
 
@@ -252,9 +252,9 @@ impl RemoteLink {
                 steps.send(&output);
             }
         }
-        let before = steps.of_run();
+        let before = steps.steps_of_run();
         steps.run(vehicle.remote_mut(), now);
-        if steps.of_run() > before {
+        if steps.steps_of_run() > before {
             self.stepped_at = vehicle.time();
         }
         let since = steps.elapsed();
@@ -287,7 +287,7 @@ impl RemoteLink {
             && steps.keeps_past()
             && !steps.is_busy()
         {
-            self.earlier.keep(steps.of_run(), steps.elapsed(), &self.remote);
+            self.earlier.keep(steps.steps_of_run(), steps.elapsed(), &self.remote);
         }
     }
 

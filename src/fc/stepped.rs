@@ -93,7 +93,7 @@ impl Stepped {
     }
 
     /// Returns the number of steps since the boot of the executable.
-    pub(super) fn of_run(&self) -> u64 {
+    pub(super) fn steps_of_run(&self) -> u64 {
         self.lockstep.as_ref().map_or(0, Lockstep::steps_of_run)
     }
 
@@ -168,7 +168,15 @@ impl Stepped {
             self.is_busy = true;
             self.elapsed += self.step;
         }
-        match lockstep.wait() {
+        let reported = lockstep.wait();
+        if let Some(error) = lockstep.take_inputs_error() {
+            let sentence = format!(
+                "This flight cannot be flown on from an earlier instant, because its record in the temporary directory \
+                 cannot be written: {error}."
+            );
+            self.events.push_back(StepEvent::Notice(RemoteNotice::Lost(sentence)));
+        }
+        match reported {
             Ok(motors) => {
                 self.is_busy = false;
                 if self.waits.take().is_some_and(|(_, is_reported)| is_reported) {

@@ -61,7 +61,7 @@ impl FlyAgain {
     pub fn of(kept: KeptFlight) -> Self {
         Self::new(move |until, progress| {
             let folder = FirmwareFolder::make().map_err(|error| {
-                format!("The firmware cannot fly again: there is no folder for it: {error}.")
+                format!("The firmware cannot fly again, because its folder cannot be made: {error}.")
             })?;
             let stopped = progress.stopped();
             #[allow(clippy::disallowed_methods, reason = "the link counts from here on the wall clock")]

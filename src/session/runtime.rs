@@ -166,7 +166,7 @@ struct Session {
     /// Flies the flight of a remote firmware that has ended again.
     again: Option<FlyAgain>,
     flying_again: Option<FlyingAgain>,
-    /// The folder and the runtime of a firmware that flew again. Declared after the runner, so that its link is dropped
+    /// The folder of a firmware that flew again. Declared after the runner, so that its link is dropped
     /// first.
     keeps: Option<Box<dyn Any + Send>>,
     /// The target up to which the flight continues as fast as possible.

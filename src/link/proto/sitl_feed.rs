@@ -296,6 +296,32 @@ mod tests {
     }
 
     #[test]
+    fn a_feed_that_continues_after_a_packet_sends_the_same_places_as_the_feed_that_sent_it() {
+        for dialect in [Dialect::SitlGz, Dialect::Legacy] {
+            let mut first = feed(dialect);
+            motors(&mut first, 50);
+            let sense = |feed: &mut SitlFeed, ms: u64, has_gps: bool| {
+                let mut frame = frame_at(ms, HOME.0 + 0.001, true);
+                (frame.pressure_pa, frame.gps) =
+                    (frame.pressure_pa.filter(|_| has_gps), frame.gps.filter(|_| has_gps));
+                feed.sense(&frame);
+            };
+            sense(&mut first, 42_300, true);
+            sense(&mut first, 42_331, false);
+            let mut second = feed(dialect);
+            second.resume(&first.packet(42_331 * MS).to_bytes());
+            for ms in [42_332, 42_395] {
+                sense(&mut first, ms, false);
+                sense(&mut second, ms, false);
+                // 1e-7 degrees are 1 cm.
+                let apart = latitude(&first, ms) - latitude(&second, ms);
+                assert!(apart.abs() < 1.5e-7, "{apart} degrees at {ms} ms");
+                assert_eq!(first.alt_amsl_m.to_bits(), second.alt_amsl_m.to_bits());
+            }
+        }
+    }
+
+    #[test]
     fn every_packet_carries_the_same_stamp_unless_the_executable_follows_simulated_time() {
         let mut constant = feed(Dialect::SitlGz);
         let mut sim = SitlFeed::new(FeedConfig { stamps: Stamps::Sim, ..constant.config });

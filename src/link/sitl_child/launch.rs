@@ -57,10 +57,15 @@ pub(super) struct Preload {
     pub(super) settings: String,
 }
 
+/// Makes the directory in which the executable runs.
+pub(super) fn make_directory(config: &ChildConfig) -> Result<(), LaunchError> {
+    std::fs::create_dir_all(&config.directory)
+        .map_err(|error| LaunchError::Directory { directory: config.directory.clone(), error })
+}
+
 /// Starts the executable in its directory, with its output piped.
 pub(super) fn spawn(config: &ChildConfig, preload: Option<(&Preload, &Path)>) -> Result<Child, LaunchError> {
-    std::fs::create_dir_all(&config.directory)
-        .map_err(|error| LaunchError::Directory { directory: config.directory.clone(), error })?;
+    make_directory(config)?;
     let mut command = Command::new(&config.launcher);
     command.arg(LAUNCH).arg(std::process::id().to_string()).arg(&config.program).args(&config.arguments);
     command.current_dir(&config.directory);

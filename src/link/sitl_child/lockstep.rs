@@ -85,8 +85,8 @@ pub struct Lockstep {
     /// The start, from which simulated time counts for the number of lines that are shown.
     started: Instant,
     process: Process,
-    /// What this run was given, if that is kept.
-    inputs: Option<Inputs>,
+    /// The inputs of this run, if they are wanted; the error if they cannot be kept.
+    inputs: Option<io::Result<Inputs>>,
     serial: Option<Serial>,
     /// The totals over all connections to this process.
     totals: SerialTotals,
@@ -108,9 +108,9 @@ pub struct Lockstep {
     steps_of_run: u32,
 }
 
-/// Begins to keep the inputs of a process that starts, if they are wanted. Without a file they are not kept.
-fn begin_inputs(config: &LockstepConfig) -> Option<Inputs> {
-    config.keeps_inputs.then(|| Inputs::begin(&config.child.directory).ok()).flatten()
+/// Begins to keep the inputs of a process that starts, if they are wanted.
+fn begin_inputs(config: &LockstepConfig) -> Option<io::Result<Inputs>> {
+    config.keeps_inputs.then(|| Inputs::begin(&config.child.directory))
 }
 
 /// The connection to the first serial port.
@@ -154,15 +154,13 @@ impl Lockstep {
     fn start_process(
         config: &LockstepConfig,
         library: &LoadedLibrary,
-    ) -> Result<(Process, Option<Inputs>), LaunchError> {
+    ) -> Result<(Process, Option<io::Result<Inputs>>), LaunchError> {
         let LockstepPorts { fdm, rc, motors, tcp } = config.ports;
         let (step_ns, boot_ns) = (config.step.as_nanos(), BOOT.as_nanos());
         let own_threads = u8::from(config.own_threads);
         let settings = format!("{fdm},{rc},{motors},{tcp},{step_ns},{boot_ns},{own_threads}");
         let preload = Preload { library: library.path(), variable: SETTINGS, settings };
-        let directory = &config.child.directory;
-        std::fs::create_dir_all(directory)
-            .map_err(|error| LaunchError::Directory { directory: directory.clone(), error })?;
+        launch::make_directory(&config.child)?;
         let inputs = begin_inputs(config);
         Ok((Process::start(&config.child, &preload)?, inputs))
     }
@@ -217,8 +215,8 @@ impl Lockstep {
             return Err(self.noted(reason));
         }
         let motors = (report.motor_packets > 0).then_some(report.motors);
-        if let (Some(inputs), Some(motors)) = (&mut self.inputs, &motors) {
-            inputs.motors(motors);
+        if let Some(motors) = &motors {
+            self.keep(|inputs| inputs.motors(motors));
         }
         self.newest = Some(report);
         Ok(motors)
@@ -276,9 +274,7 @@ impl Lockstep {
     pub fn step(&mut self, input: StepInput) {
         self.steps = self.steps.wrapping_add(1);
         self.steps_of_run = self.steps_of_run.wrapping_add(1);
-        if let Some(inputs) = &mut self.inputs {
-            inputs.step(&input);
-        }
+        self.keep(|inputs| inputs.step(&input));
         self.write_waiting();
         let serves = std::mem::take(&mut self.has_news)
             || self.serial.is_some() && self.steps_of_run.is_multiple_of(SERIAL_EVERY);
@@ -303,9 +299,7 @@ impl Lockstep {
         self.totals.connections += 1;
         self.has_news = true;
         self.serial = Some(Serial { stream, waiting: Vec::new() });
-        if let Some(inputs) = &mut self.inputs {
-            inputs.connected(true);
-        }
+        self.keep(|inputs| inputs.connected(true));
         Ok(true)
     }
 
@@ -332,9 +326,7 @@ impl Lockstep {
         if self.serial.take().is_some() {
             self.totals.closed += 1;
             self.has_news = true;
-            if let Some(inputs) = &mut self.inputs {
-                inputs.connected(false);
-            }
+            self.keep(|inputs| inputs.connected(false));
         }
     }
 
@@ -357,10 +349,25 @@ impl Lockstep {
     pub fn send(&mut self, bytes: &[u8]) {
         if let Some(serial) = &mut self.serial {
             serial.waiting.extend_from_slice(bytes);
-            if let Some(inputs) = &mut self.inputs {
-                inputs.serial(bytes);
+            self.keep(|inputs| inputs.serial(bytes));
+        }
+    }
+
+    /// Uses the inputs of this run, if they are kept. Without the rest they would be of no use, so an error ends them.
+    fn keep<T>(&mut self, work: impl FnOnce(&mut Inputs) -> io::Result<T>) -> Option<T> {
+        let Some(Ok(inputs)) = &mut self.inputs else { return None };
+        match work(inputs) {
+            Ok(done) => Some(done),
+            Err(error) => {
+                self.inputs = Some(Err(error));
+                None
             }
         }
+    }
+
+    /// Returns the error, once, if the inputs of this run cannot be kept.
+    pub fn take_inputs_error(&mut self) -> Option<io::Error> {
+        self.inputs.take_if(|inputs| inputs.is_err())?.err()
     }
 
     /// Returns the number of steps since its boot.
@@ -375,12 +382,13 @@ impl Lockstep {
 
     /// Returns `true` if its run can be computed again.
     pub fn keeps_past(&self) -> bool {
-        self.inputs.is_some()
+        matches!(self.inputs, Some(Ok(_)))
     }
 
     /// Returns its run since its boot, which can be computed again; `None` if its inputs are not kept.
     pub fn past(&mut self) -> Option<KeptRun> {
-        self.inputs.as_mut()?.run(&self.config).ok()
+        let config = self.config.clone();
+        self.keep(|inputs| inputs.run(config))
     }
 
     /// Returns the bytes that the executable has sent over the serial port up to its last report. Returns `None` after them

@@ -403,7 +403,7 @@ impl Session {
         self.keeps = Some(keeps);
         self.vehicle = vehicle;
         self.continue_on(branch, left, now);
-        self.notice("Another process of the firmware flies on from here. What it saves is lost at the end.");
+        self.notice("Another process of the firmware flies on. What it saves from now on is lost at the end of betadeck.");
     }
 
     /// Continues the flight from the earlier instant that is shown. The clients of the links are

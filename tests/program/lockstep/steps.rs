@@ -65,8 +65,9 @@ fn another_process_computes_the_same_up_to_any_step_and_goes_on_like_the_first()
     }
     let past = flight.lockstep.past().unwrap();
     assert_eq!(past.steps, 503);
-    for steps in [0, 4, 357] {
-        Flight::again(past.clone(), steps).unwrap();
+    for (steps, is_connected) in [(0, false), (3, false), (4, true), (357, true)] {
+        let again = Flight::again(past.clone(), steps).unwrap();
+        assert_eq!(again.lockstep.is_connected(), is_connected, "after {steps} steps");
     }
     let mut again = Flight::again(past.clone(), 503).unwrap();
     flight.log.clear();

@@ -33,10 +33,9 @@ const DISCONNECTED: u8 = 6;
 pub(super) struct Inputs {
     file: BufWriter<Arc<File>>,
     folder: Arc<Vec<(OsString, Vec<u8>)>>,
+    /// The bytes and the steps so far. No more are kept after [`MOST_BYTES`].
     bytes: u64,
     steps: u64,
-    /// `false` once the file is full, or cannot be written.
-    grows: bool,
 }
 
 impl Inputs {
@@ -55,45 +54,47 @@ impl Inputs {
             }
         }
         let file = BufWriter::with_capacity(1 << 16, Arc::new(tempfile::tempfile()?));
-        Ok(Self { file, folder: Arc::new(files), bytes: 0, steps: 0, grows: true })
+        Ok(Self { file, folder: Arc::new(files), bytes: 0, steps: 0 })
     }
 
-    pub(super) fn step(&mut self, input: &StepInput) {
+    pub(super) fn step(&mut self, input: &StepInput) -> io::Result<()> {
         if let Some(rc) = &input.rc {
-            self.add(RC, rc);
+            self.add(RC, rc)?;
         }
-        self.add(STATE, &input.fdm);
-        self.steps += u64::from(self.grows);
+        self.steps += u64::from(self.bytes < MOST_BYTES);
+        self.add(STATE, &input.fdm)
     }
 
-    pub(super) fn motors(&mut self, packet: &[u8; MOTOR_BYTES]) {
-        self.add(MOTORS, packet);
+    pub(super) fn motors(&mut self, packet: &[u8; MOTOR_BYTES]) -> io::Result<()> {
+        self.add(MOTORS, packet)
     }
 
-    pub(super) fn serial(&mut self, bytes: &[u8]) {
-        let size = u32::try_from(bytes.len()).unwrap_or_default().to_le_bytes();
-        self.add(SERIAL, &[&size, bytes].concat());
+    pub(super) fn serial(&mut self, bytes: &[u8]) -> io::Result<()> {
+        let size = u32::try_from(bytes.len()).map_err(io::Error::other)?.to_le_bytes();
+        self.add(SERIAL, &[&size, bytes].concat())
     }
 
-    pub(super) fn connected(&mut self, is_connected: bool) {
-        self.add(if is_connected { CONNECTED } else { DISCONNECTED }, &[]);
+    pub(super) fn connected(&mut self, is_connected: bool) -> io::Result<()> {
+        self.add(if is_connected { CONNECTED } else { DISCONNECTED }, &[])
     }
 
-    fn add(&mut self, kind: u8, data: &[u8]) {
-        self.grows = self.grows
-            && self.bytes < MOST_BYTES
-            && self.file.write_all(&[kind]).and_then(|()| self.file.write_all(data)).is_ok();
-        self.bytes += if self.grows { 1 + data.len() as u64 } else { 0 };
+    fn add(&mut self, kind: u8, data: &[u8]) -> io::Result<()> {
+        if self.bytes < MOST_BYTES {
+            self.file.write_all(&[kind])?;
+            self.file.write_all(data)?;
+            self.bytes += 1 + data.len() as u64;
+        }
+        Ok(())
     }
 
     /// Returns the run so far.
     ///
     /// # Errors
     /// Returns the system's error.
-    pub(super) fn run(&mut self, config: &LockstepConfig) -> io::Result<KeptRun> {
+    pub(super) fn run(&mut self, config: LockstepConfig) -> io::Result<KeptRun> {
         self.file.flush()?;
         let (file, folder) = (Arc::clone(self.file.get_ref()), Arc::clone(&self.folder));
-        Ok(KeptRun { config: config.clone(), file, folder, bytes: self.bytes, steps: self.steps })
+        Ok(KeptRun { config, file, folder, bytes: self.bytes, steps: self.steps })
     }
 }
 
@@ -158,10 +159,12 @@ impl KeptRun {
         let (mut step, mut rc, mut fdm) = (0, None, None);
         while !inputs.fill_buf()?.is_empty() {
             match array::<1>(&mut inputs)? {
-                [MOTORS] if motors.take() != Some(array(&mut inputs)?) => {
-                    return Err(NotAgain::Differs(step));
+                [MOTORS] => {
+                    let wanted = array(&mut inputs)?;
+                    if motors.take() != Some(wanted) {
+                        return Err(NotAgain::Differs(step));
+                    }
                 }
-                [MOTORS] => {}
                 // The executable takes what follows in with the next step.
                 _ if step == steps => break,
                 [STATE] if step > 0 && motors.is_some() => return Err(NotAgain::Differs(step)),
@@ -203,7 +206,7 @@ fn finish(
             return Err(NotAgain::Stopped);
         }
         if let Some(motors) = motors {
-            // What it prints was reported when the first process printed it.
+            // The first process has printed the same lines, and they were reported.
             while lockstep.take_event().is_some() {}
             return Ok(motors);
         }

@@ -62,7 +62,7 @@ pub(crate) fn end_step() {
         wait_for_grant(&page.granted, granted);
         // SAFETY: has no conditions, and ends the process.
         unsafe {
-            if getppid() != PARENT.load(SeqCst) {
+            if page.granted.load(SeqCst) == granted && getppid() != PARENT.load(SeqCst) {
                 _exit(0);
             }
         }
