@@ -1,7 +1,7 @@
 //! Opens the doors of a session and keeps their state in view.
 #![allow(clippy::disallowed_methods, reason = "the state of the doors is published at a rhythm of wall time")]
 
-use std::net::{IpAddr, Ipv4Addr, SocketAddr};
+use std::net::{IpAddr, Ipv4Addr, SocketAddr, TcpListener, UdpSocket};
 use std::time::{Duration, Instant};
 
 use tokio::sync::watch;
@@ -10,7 +10,7 @@ use tokio_util::sync::CancellationToken;
 use crate::args::{DoorArgs, FlightArgs, PhysicsArgs};
 use crate::events::EndpointAddresses;
 use crate::fc::RemoteLink;
-use crate::launch::RemoteFirmware;
+use crate::launch::{FirmwarePorts, RemoteFirmware};
 use crate::link::endpoint::EndpointKind;
 use crate::link::proto::fdm_link::FdmLinkConfig;
 use crate::link::{ExternalSimulator, FcPlace, ListenConfig, Listeners};
@@ -33,6 +33,9 @@ pub(super) struct LiveArgs<'a> {
 
 /// The interval at which the state of the doors is published.
 const VIEW: Duration = Duration::from_millis(250);
+/// The distance of the TCP and RC doors from the ports of a firmware on the wall clock. Its eight serial ports follow
+/// each other.
+const ABOVE: u16 = 10;
 
 /// The open doors on the side of the sockets.
 #[derive(Debug)]
@@ -62,14 +65,17 @@ pub(super) async fn open(
     link: Option<&RemoteLink>,
 ) -> Result<Option<Opened>, AppError> {
     let wanted = |port: u16| (!args.no_ports).then_some(port);
-    // Ports of a firmware on the wall clock are not ours. One in simulated time uses others, which the system chose.
+    // A firmware on the wall clock has its ports itself. One in simulated time uses others, which the system chose.
     let on_wall_clock = firmware.filter(|_| !link.is_some_and(RemoteLink::is_in_steps));
-    let own = |port: u16| wanted(port).filter(|_| on_wall_clock.is_none());
     let fdm_port = physics.is_external().then_some(args.udp_ports().fdm);
-    let (tcp_port, ws_port, rc_port) = match connect {
+    let (tcp_port, ws_port, rc_port) = match (connect, on_wall_clock) {
         // For a real craft, only the requested doors are open, and no door for RC.
-        Some(_) => (args.tcp_port, args.ws_port, None),
-        None => (own(args.tcp_port()), wanted(args.ws_port()), own(args.udp_ports().rc)),
+        (Some(_), _) => (args.tcp_port, args.ws_port, None),
+        (None, Some(firmware)) => {
+            let (tcp, rc) = beside(args.address(), firmware.ports);
+            (wanted(tcp), wanted(args.ws_port()), wanted(rc))
+        }
+        (None, None) => (wanted(args.tcp_port()), wanted(args.ws_port()), wanted(args.udp_ports().rc)),
     };
     if [tcp_port, ws_port, rc_port, fdm_port].iter().all(Option::is_none) {
         return Ok(None);
@@ -79,10 +85,13 @@ pub(super) async fn open(
     let links = Links::open(&config).await;
     let doors = &links.doors;
     let mut notices: Vec<String> = doors.problems().map(|problem| format!("{problem}.")).collect();
-    if let Some(firmware) = on_wall_clock {
-        let (tcp, rc) = (firmware.ports.tcp, firmware.ports.udp.rc);
+    let port = |kind| doors.address(kind).map(|address| address.port());
+    if let (Some(firmware), Some(tcp), Some(rc)) =
+        (on_wall_clock, port(EndpointKind::Tcp), port(EndpointKind::Rc))
+    {
+        let (its_tcp, its_rc) = (firmware.ports.tcp, firmware.ports.udp.rc);
         notices.push(format!(
-            "TCP {tcp} and UDP {rc} belong to the firmware: this program keeps its TCP and RC doors closed."
+            "TCP {its_tcp} and UDP {its_rc} belong to the firmware: the doors of this program are TCP {tcp} and UDP {rc}."
         ));
     }
     if let Some(address) = args.listen.filter(|address| !address.is_loopback()) {
@@ -102,6 +111,14 @@ pub(super) async fn open(
     let stop = CancellationToken::new();
     let keeper = tokio::spawn(keep(doors, view_tx, stop.clone()));
     Ok(Some(Opened { doors: OpenDoors { stop, keeper }, endpoints, addresses, notices }))
+}
+
+/// Returns the ports of the TCP and RC doors beside a firmware that has the usual ones itself: ten above its own, or
+/// any free ones.
+fn beside(listen: IpAddr, ports: FirmwarePorts) -> (u16, u16) {
+    let tcp = ports.tcp.checked_add(ABOVE).filter(|port| TcpListener::bind((listen, *port)).is_ok());
+    let rc = ports.udp.rc.checked_add(ABOVE).filter(|port| UdpSocket::bind((listen, *port)).is_ok());
+    (tcp.unwrap_or(0), rc.unwrap_or(0))
 }
 
 /// Returns a sentence about doors that are open to other machines: the actions that they allow.

@@ -20,5 +20,5 @@ pub(crate) mod program;
 mod scripts;
 mod serial;
 mod simulator;
-mod transmitter;
+pub(crate) mod transmitter;
 mod two;

@@ -1,6 +1,7 @@
 //! `betadeck serve` with a remote firmware, which runs in its own process and uses real sockets: `betadeck sitl`, and
 //! the stand-in with each of its faults.
 
+use std::net::{SocketAddr, TcpStream};
 use std::time::{Duration, Instant};
 
 use serde_json::Value;
@@ -9,7 +10,9 @@ use super::lossy::LossyLink;
 use super::stand_in::process::{self, Trouble, VARIABLE};
 use super::stand_in::program::{End, Ports};
 use super::stand_in::{StandIn, free_ports};
+use crate::doors::msp;
 use crate::doors::program::{PATIENCE, Program};
+use crate::doors::transmitter::Script;
 
 /// A running `betadeck serve` with its firmware.
 struct Served {
@@ -84,6 +87,26 @@ fn the_drop_in_is_a_remote_firmware_that_saves_its_settings() {
         "{before}"
     );
     served.program.wait("fix", |line| line.contains("\"gps_fix\"").then_some(()));
+}
+
+#[test]
+fn on_the_wall_clock_a_client_and_a_script_reach_the_firmware_through_the_doors() {
+    let mut served = Served::drop_in(free_ports(), &["--fresh"]);
+    let doors = served.program.wait("doors", |line| {
+        let event: Value = serde_json::from_str(line).ok()?;
+        (event["event"] == "doors").then_some(event)
+    });
+    let door = |name: &str| doors[name].as_str().unwrap().parse().unwrap();
+    served.notice(" answers: Betaflight ");
+    let script = Script::udp(door("rc"));
+    let mut client = TcpStream::connect::<SocketAddr>(door("tcp")).unwrap();
+    client.set_read_timeout(Some(PATIENCE)).unwrap();
+    // The script switches AUTOPILOT on with its sixth channel.
+    let has_switch = |rc: &[u8]| rc[10..12] == 2000_u16.to_le_bytes();
+    while !msp::ask(&mut client, 105, &[]).is_some_and(|rc| has_switch(&rc)) {
+        std::thread::sleep(Duration::from_millis(20));
+    }
+    script.end();
 }
 
 #[test]
