@@ -177,7 +177,7 @@ async fn fly(
 ) {
     let job = effects.into_iter().find_map(estimate).expect("an estimate is asked for");
     let (reply, copy) = ReplyTo::channel();
-    session.commands.send(Command::CopyVehicle(reply)).await.unwrap();
+    session.commands.send(Command::CopyVehicle { continues: false, reply }).await.unwrap();
     forecaster.order(job, copy.await.unwrap().unwrap());
     let reply = answered.recv().await.unwrap();
     update(state, Msg::Forecast(reply));

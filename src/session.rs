@@ -6,7 +6,6 @@ mod command_queue;
 mod event_sender;
 mod flight_feed;
 mod flight_logs;
-mod fly_again;
 mod host_status;
 mod late_answers;
 mod links;
@@ -25,7 +24,6 @@ mod waker;
 
 pub use command::{Command, Seek, SessionView};
 pub use flight_feed::{FeedReceiver, FlightFeed, FlightPart, flight_feed};
-pub use fly_again::{FlownAgain, FlyAgain, Progress};
 pub use links::{Links, MotorTargets, MotorsError};
 pub use persistence::Persistence;
 pub use replay::{ReplayConfig, ReplayStart, start_replay};

@@ -160,6 +160,13 @@ impl Timeline {
         self.replay = None;
     }
 
+    /// Returns a copy of the vehicle of the picture that is shown, or else of the newest one; `None` if the recording has no
+    /// pictures.
+    pub fn picture(&self, head: SimTime) -> Option<Vehicle> {
+        let newest = || Some(self.recording.latest_before(head)?.vehicle());
+        self.is_pictures.then(|| self.shown().or_else(newest)).flatten().cloned()
+    }
+
     /// Continues from the picture that is shown, on a new branch. Forgets the recording after it. Returns the vehicle of the
     /// picture; `None` if no earlier instant is shown.
     pub fn continue_pictures(&mut self) -> Option<Vehicle> {

@@ -18,6 +18,7 @@ pub use report::{Forecast, ForecastEnd, ForecastKind};
 pub use setting_change::PlanWithSettings;
 pub use what_if::{WHAT_IFS, WhatIf};
 
+use super::setup::SetupNotice;
 use super::{Flight, FlightEnd, FlightOptions, Verdict};
 use crate::firmware::Firmware;
 use crate::plan::FlightPlan;
@@ -104,10 +105,16 @@ impl ForecastRun {
         PlanWithSettings { plan, settings }: PlanWithSettings<'_>,
         takeoff_m: f64,
     ) -> Result<Self, String> {
-        check_possible(&vehicle)?;
+        check_world(&vehicle)?;
         let wind = vehicle.world_status().map(|world| world.wind).unwrap_or_default();
         let command = what_if.command(wind)?;
-        let flies = check_flies(&vehicle).is_ok();
+        let flies = check_flies(&vehicle);
+        if vehicle.embedded().is_none() {
+            // Another program flies no plan from home here.
+            flies.clone()?;
+            check_reaches_remote(&vehicle, &command)?;
+        }
+        let flies = flies.is_ok();
         let begins_now = flies || matches!(command, WorldCommand::SetWind(_));
         if begins_now {
             apply(&mut vehicle, &command.clone().into())?;
@@ -138,6 +145,16 @@ impl ForecastRun {
             unchanged: None,
             at_engagement: None,
         })
+    }
+
+    /// Returns the vehicle that flies ahead.
+    pub fn vehicle(&self) -> &Vehicle {
+        self.flight.vehicle()
+    }
+
+    /// Returns the vehicle that flies ahead. The steps of a remote flight controller are the caller's.
+    pub fn vehicle_mut(&mut self) -> &mut Vehicle {
+        self.flight.vehicle_mut()
     }
 
     /// Advances the flight by at most `ticks`. Returns the forecast when the flight is over.
@@ -217,14 +234,27 @@ pub fn check_possible(vehicle: &Vehicle) -> Result<(), String> {
     if vehicle.embedded().is_none() {
         return Err(CONTROLLER_IS_REMOTE.to_owned());
     }
+    check_world(vehicle)
+}
+
+fn check_world(vehicle: &Vehicle) -> Result<(), String> {
     if vehicle.truth().is_none() {
         return Err(PHYSICS_IS_EXTERNAL.to_owned());
     }
     Ok(())
 }
 
+/// Checks that a remote flight controller can notice a change of the world.
+fn check_reaches_remote(vehicle: &Vehicle, command: &WorldCommand) -> Result<(), String> {
+    let switches = vehicle.world_status().map(|world| world.switches).unwrap_or_default();
+    match command.fault().filter(|fault| !fault.acts_on_remote_controller(&switches)) {
+        Some(fault) => Err(SetupNotice::IdleFault(fault.kind()).to_string()),
+        None => Ok(()),
+    }
+}
+
 fn check_flies(vehicle: &Vehicle) -> Result<(), String> {
-    check_possible(vehicle)?;
+    check_world(vehicle)?;
     if vehicle.crashed() {
         return Err("The craft crashed, so its flight is over: `R` puts it back home.".to_owned());
     }

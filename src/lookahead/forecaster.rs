@@ -4,18 +4,22 @@
 //! reply.
 #![allow(clippy::disallowed_methods, reason = "slices are cut by wall time, so that a newer job never waits")]
 
+use std::any::Any;
 use std::sync::mpsc;
 use std::thread;
 use std::time::{Duration, Instant};
 
 use crate::flight::forecast::{Forecast, ForecastKind, ForecastRun, PlanWithSettings, WhatIf};
-use crate::lookahead::VehicleCopy;
+use crate::lookahead::{FlownAgain, FlyingAgain, VehicleCopy};
 use crate::plan::FlightPlan;
+use crate::runner::{Runner, Stopped};
 
 /// The longest time without a check for new jobs.
 const SLICE: Duration = Duration::from_millis(8);
 /// The number of ticks between two reads of the clock.
 const TICKS: u32 = 100;
+/// The time between two looks at a process that computes a flight again.
+const PROGRESS: Duration = Duration::from_millis(20);
 /// The niceness of the thread, 0…19. It yields to the other threads of this process, because the flight has
 /// priority.
 const NICENESS: i32 = 5;
@@ -49,6 +53,11 @@ pub enum ForecastRequest {
 }
 
 impl ForecastRequest {
+    /// Returns `true` if it continues the present flight, if there is one.
+    pub fn continues(&self) -> bool {
+        matches!(self, Self::LookAhead | Self::WhatIf { .. })
+    }
+
     pub fn kind(&self) -> ForecastKind {
         match self {
             Self::PlanEstimate { .. } => ForecastKind::PlanEstimate,
@@ -127,6 +136,53 @@ struct Flying {
     revision: u64,
     kind: ForecastKind,
     run: ForecastRun,
+    controller: Controller,
+}
+
+/// The flight controller of a forecast.
+#[derive(Debug)]
+enum Controller {
+    /// It is part of the vehicle.
+    Embedded,
+    /// Another process of an executable computes the flight up to the present instant.
+    FlyingAgain(FlyingAgain),
+    /// That process flies ahead. Dropped in this order.
+    Ahead { runner: Box<Runner>, _keeps: Box<dyn Any + Send> },
+}
+
+impl Flying {
+    /// Flies for one slice. Returns the result once there is one.
+    fn advance(&mut self) -> Option<Result<Box<Forecast>, String>> {
+        let began = Instant::now();
+        while began.elapsed() < SLICE {
+            let forecast = match &mut self.controller {
+                Controller::Embedded => self.run.advance(TICKS),
+                Controller::FlyingAgain(flying) => match flying.result()? {
+                    (_, Ok(FlownAgain { link, keeps })) => {
+                        let step_us = self.run.vehicle().step_us();
+                        let runner = Box::new(Runner::new(step_us, f64::INFINITY, Some(link)));
+                        self.controller = Controller::Ahead { runner, _keeps: keeps };
+                        None
+                    }
+                    (_, Err(sentence)) => return Some(Err(sentence)),
+                },
+                Controller::Ahead { runner, .. } => match runner.round(&mut self.run, &mut (), || false) {
+                    Ok(end) => end,
+                    Err(Stopped::Failed(sentence)) => return Some(Err(sentence)),
+                    Err(Stopped::Interrupted | Stopped::BySubscriber) => None,
+                },
+            };
+            if let Some(forecast) = forecast {
+                return Some(Ok(Box::new(forecast)));
+            }
+        }
+        None
+    }
+
+    /// Returns `true` while another process computes.
+    fn waits(&self) -> bool {
+        matches!(self.controller, Controller::FlyingAgain(_))
+    }
 }
 
 struct Worker<A> {
@@ -136,28 +192,33 @@ struct Worker<A> {
 }
 
 impl<A: FnMut(ForecastReply)> Worker<A> {
+    /// Works until the handle is dropped.
     fn run(&mut self, incoming: &mpsc::Receiver<Order>) {
-        loop {
-            if self.flying.is_empty() {
-                match incoming.recv() {
-                    Ok(order) => self.begin(order),
-                    Err(mpsc::RecvError) => return,
-                }
+        while let Ok(order) = self.next(incoming) {
+            match order {
+                Some(order) => self.begin(order),
+                None => self.fly_on(),
             }
-            loop {
-                match incoming.try_recv() {
-                    Ok(order) => self.begin(order),
-                    Err(mpsc::TryRecvError::Empty) => break,
-                    Err(mpsc::TryRecvError::Disconnected) => return,
-                }
-            }
-            self.fly_on();
+        }
+    }
+
+    /// Returns the next order; `None` while there is none and a forecast can go on.
+    fn next(&self, incoming: &mpsc::Receiver<Order>) -> Result<Option<Order>, mpsc::RecvError> {
+        if self.flying.is_empty() {
+            return incoming.recv().map(Some);
+        }
+        let rest = if self.flying.iter().all(Flying::waits) { PROGRESS } else { Duration::ZERO };
+        match incoming.recv_timeout(rest) {
+            Ok(order) => Ok(Some(order)),
+            Err(mpsc::RecvTimeoutError::Timeout) => Ok(None),
+            Err(mpsc::RecvTimeoutError::Disconnected) => Err(mpsc::RecvError),
         }
     }
 
     fn begin(&mut self, Order { job, copy }: Order) {
         let ForecastJob { revision, request } = job;
-        let VehicleCopy { vehicle, takeoff_m } = copy;
+        let VehicleCopy { vehicle, takeoff_m, again } = copy;
+        let until = vehicle.time();
         let kind = request.kind();
         // Copies of the vehicle may arrive in another order than they were requested.
         if self.flying.iter().any(|flying| flying.kind == kind && flying.revision > revision) {
@@ -178,26 +239,27 @@ impl<A: FnMut(ForecastReply)> Worker<A> {
                 ForecastRun::setting_change(*vehicle, &changed, plan, takeoff_m)
             }
         };
-        match run {
-            Ok(run) => self.flying.push(Flying { revision, kind, run }),
+        let controller = match again.filter(|_| run.is_ok()).map(|again| again.start(until)) {
+            None => Ok(Controller::Embedded),
+            Some(Ok(flying)) => Ok(Controller::FlyingAgain(flying)),
+            Some(Err(error)) => Err(format!("The flight cannot be flown again: {error}.")),
+        };
+        match run.and_then(|run| Ok(Flying { revision, kind, run, controller: controller? })) {
+            Ok(flying) => self.flying.push(flying),
             Err(reason) => (self.answer)(ForecastReply { revision, kind, forecast: Err(reason) }),
         }
     }
 
-    /// Runs a slice of the forecast that has waited longest.
+    /// Runs a slice of the forecast that has waited longest. There is at least one.
     fn fly_on(&mut self) {
-        if self.flying.is_empty() {
-            return;
-        }
-        let Flying { revision, kind, mut run } = self.flying.remove(0);
-        let began = Instant::now();
-        while began.elapsed() < SLICE {
-            if let Some(forecast) = run.advance(TICKS) {
-                (self.answer)(ForecastReply { revision, kind, forecast: Ok(Box::new(forecast)) });
-                return;
+        let mut flying = self.flying.remove(0);
+        match flying.advance() {
+            Some(forecast) => {
+                let Flying { revision, kind, .. } = flying;
+                (self.answer)(ForecastReply { revision, kind, forecast });
             }
+            None => self.flying.push(flying),
         }
-        self.flying.push(Flying { revision, kind, run });
     }
 }
 

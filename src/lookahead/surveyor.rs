@@ -153,7 +153,7 @@ fn fly(
 
 fn sweep(
     SurveyedPlan { plan, settings }: &SurveyedPlan,
-    VehicleCopy { vehicle, takeoff_m }: &VehicleCopy,
+    VehicleCopy { vehicle, takeoff_m, .. }: &VehicleCopy,
     fault: ScheduledFault,
     is_stopped: &(impl Fn() -> bool + Sync),
     report: &mut impl FnMut(SurveyNews),

@@ -3,6 +3,7 @@
 use std::convert::Infallible;
 
 use crate::events::Event;
+use crate::flight::forecast::{Forecast, ForecastRun};
 use crate::flight::{Flight, FlightEnd};
 use crate::scenario::CaseFlight;
 use crate::telemetry;
@@ -86,6 +87,23 @@ impl Flying for Flight {
 
     fn tick(&mut self, report: impl FnMut(telemetry::Event)) -> Option<FlightEnd> {
         Flight::tick(self, report)
+    }
+}
+
+impl Flying for ForecastRun {
+    type End = Forecast;
+
+    fn vehicle(&self) -> &Vehicle {
+        ForecastRun::vehicle(self)
+    }
+
+    fn vehicle_mut(&mut self) -> &mut Vehicle {
+        ForecastRun::vehicle_mut(self)
+    }
+
+    /// A forecast takes the events itself.
+    fn tick(&mut self, _report: impl FnMut(telemetry::Event)) -> Option<Forecast> {
+        self.advance(1)
     }
 }
 

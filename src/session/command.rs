@@ -104,7 +104,11 @@ pub enum Command {
     },
     /// Copies the vehicle as shown between two ticks, for a forecast. The reply is the copy, or the reason
     /// why there is none.
-    CopyVehicle(ReplyTo<Result<VehicleCopy, String>>),
+    CopyVehicle {
+        /// `true` if the forecast continues the present flight. An executable can be flown ahead only so.
+        continues: bool,
+        reply: ReplyTo<Result<VehicleCopy, String>>,
+    },
     /// Copies the recorded flight of the shown instant up to its end. The reply is the copy, or the reason
     /// why there is none.
     RecordedFlight(ReplyTo<Result<Box<RecordedFlight>, String>>),

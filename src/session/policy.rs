@@ -143,8 +143,10 @@ pub enum Intent {
     Save,
     /// Runs a line with this impact, or exchanges such a message.
     Line(Impact),
-    /// Flies a copy of the vehicle ahead.
+    /// Flies a copy of the vehicle from home, or many copies.
     Forecast,
+    /// Flies the present flight ahead on a copy of the vehicle.
+    FlyAhead,
 }
 
 impl Intent {
@@ -163,7 +165,8 @@ impl Intent {
             Command::ReadSettings { .. } => Self::Line(Impact::Reads),
             Command::Save { .. } => Self::Save,
             Command::World { .. } => Self::World,
-            Command::CopyVehicle(_) => Self::Forecast,
+            Command::CopyVehicle { continues: true, .. } => Self::FlyAhead,
+            Command::CopyVehicle { .. } => Self::Forecast,
             Command::RecordedFlight(_)
             | Command::Curves { .. }
             | Command::CopyRecording(_)
@@ -193,9 +196,13 @@ impl Intent {
     fn impact(self, facts: &Facts) -> Impact {
         let opens_cli = facts.remote.is_some_and(|remote| remote.opens_cli);
         match self {
-            Self::Read | Self::Time | Self::Recording | Self::OtherFlight | Self::FlyOn | Self::Forecast => {
-                Impact::Reads
-            }
+            Self::Read
+            | Self::Time
+            | Self::Recording
+            | Self::OtherFlight
+            | Self::FlyOn
+            | Self::Forecast
+            | Self::FlyAhead => Impact::Reads,
             Self::Download => Impact::Reads.or_changes(opens_cli),
             Self::Line(impact) => impact.or_changes(opens_cli),
             Self::Upload | Self::Save => Impact::Changes,
@@ -207,9 +214,13 @@ impl Intent {
     /// Returns `true` if it needs the vehicle that flies, which waits while an earlier instant is shown.
     fn needs_newest(self) -> bool {
         match self {
-            Self::Read | Self::Time | Self::Recording | Self::OtherFlight | Self::FlyOn | Self::Forecast => {
-                false
-            }
+            Self::Read
+            | Self::Time
+            | Self::Recording
+            | Self::OtherFlight
+            | Self::FlyOn
+            | Self::Forecast
+            | Self::FlyAhead => false,
             Self::Line(impact) => impact != Impact::Reads,
             Self::Fly
             | Self::Move
@@ -251,7 +262,7 @@ impl fmt::Display for Refusal {
 type Rule = (&'static str, fn(&Facts, Intent) -> bool);
 
 /// The rules for a craft whose access allows the request. The first that applies refuses it.
-const RULES: [Rule; 15] = [
+const RULES: [Rule; 17] = [
     (RECORDED, |facts, intent| {
         let looks = matches!(intent, Intent::Read | Intent::Time | Intent::Recording | Intent::OtherFlight);
         facts.is_replay && !looks
@@ -283,7 +294,14 @@ const RULES: [Rule; 15] = [
         intent == Intent::Reset && facts.simulator == Some(LinkState::Flowing)
     }),
     (CONTROLLER_IS_REMOTE, |facts, intent| intent == Intent::Forecast && facts.remote.is_some()),
-    (PHYSICS_IS_EXTERNAL, |facts, intent| intent == Intent::Forecast && facts.simulator.is_some()),
+    (CONTROLLER_IS_REMOTE, |facts, intent| {
+        let can_fly_ahead = |remote: RemoteFacts| remote.is_in_steps && facts.is_recorded;
+        intent == Intent::FlyAhead && facts.remote.is_some_and(|remote| !can_fly_ahead(remote))
+    }),
+    (NOT_FLOWN_AGAIN, |facts, intent| intent == Intent::FlyAhead && facts.cannot_continue),
+    (PHYSICS_IS_EXTERNAL, |facts, intent| {
+        matches!(intent, Intent::Forecast | Intent::FlyAhead) && facts.simulator.is_some()
+    }),
 ];
 
 /// Checks that a request is allowed.

@@ -52,6 +52,7 @@ fn intent_of(effect: &Effect) -> Intent {
         Effect::Upload { .. } => Intent::Upload,
         Effect::SaveToFlash => Intent::Save,
         Effect::World(_) => Intent::World,
+        Effect::Forecast(job) if job.request.continues() => Intent::FlyAhead,
         Effect::Forecast(_) | Effect::Survey(_) => Intent::Forecast,
         Effect::Files(_)
         | Effect::EndSurvey(_)

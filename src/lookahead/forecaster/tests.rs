@@ -5,7 +5,7 @@ use crate::plan::builtin::BuiltinPlan;
 
 fn copy() -> VehicleCopy {
     let (vehicle, _) = FlightSetup::default().build().unwrap();
-    VehicleCopy { vehicle: Box::new(vehicle), takeoff_m: 10.0 }
+    VehicleCopy { vehicle: Box::new(vehicle), takeoff_m: 10.0, again: None }
 }
 
 fn estimate(revision: u64, plan: &str) -> ForecastJob {

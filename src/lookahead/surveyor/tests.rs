@@ -9,7 +9,7 @@ use crate::vehicle::VehicleCommand;
 
 fn copy() -> VehicleCopy {
     let (vehicle, _) = FlightSetup::default().build().unwrap();
-    VehicleCopy { vehicle: Box::new(vehicle), takeoff_m: 5.0 }
+    VehicleCopy { vehicle: Box::new(vehicle), takeoff_m: 5.0, again: None }
 }
 
 /// Starts a thread. Returns its handle and its replies.
@@ -78,7 +78,7 @@ fn copy_in_flight() -> VehicleCopy {
         vehicle.apply(&VehicleCommand::from(command)).accepted().unwrap();
     }
     (0..500).for_each(|_| vehicle.tick());
-    VehicleCopy { vehicle: Box::new(vehicle), takeoff_m: 5.0 }
+    VehicleCopy { vehicle: Box::new(vehicle), takeoff_m: 5.0, again: None }
 }
 
 fn surveyed() -> SurveyedPlan {

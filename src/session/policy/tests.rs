@@ -6,7 +6,7 @@ use crate::signals::RcFrame;
 use crate::sim::WorldCommand;
 use crate::telemetry::InFlightCommand;
 
-const ALL: [Intent; 16] = [
+const ALL: [Intent; 17] = [
     Intent::Read,
     Intent::Time,
     Intent::Recording,
@@ -23,6 +23,7 @@ const ALL: [Intent; 16] = [
     Intent::Line(Impact::Changes),
     Intent::Line(Impact::Forbidden(NOTHING_MOVES)),
     Intent::Forecast,
+    Intent::FlyAhead,
 ];
 
 const EMBEDDED: Facts = Facts {
@@ -104,6 +105,7 @@ fn an_external_simulator_keeps_time_and_place_to_itself() {
         (Intent::Recording, TIME_IS_EXTERNAL),
         (Intent::FlyOn, TIME_IS_EXTERNAL),
         (Intent::Forecast, PHYSICS_IS_EXTERNAL),
+        (Intent::FlyAhead, PHYSICS_IS_EXTERNAL),
     ];
     assert_eq!(refused(&silent), table(&time));
     let flowing = Facts { simulator: Some(LinkState::Flowing), ..silent };
@@ -118,6 +120,7 @@ fn a_remote_flight_controller_of_a_simulated_craft_keeps_its_time() {
         (Intent::FlyOn, NOT_RECORDED),
         (Intent::Order, NO_ORDERS),
         (Intent::Forecast, CONTROLLER_IS_REMOTE),
+        (Intent::FlyAhead, CONTROLLER_IS_REMOTE),
     ];
     assert_eq!(refused(&REMOTE), table(&always));
     let in_steps = REMOTE.remote.map(|remote| RemoteFacts { is_in_steps: true, ..remote });
@@ -126,7 +129,10 @@ fn a_remote_flight_controller_of_a_simulated_craft_keeps_its_time() {
     // Its flight is recorded as pictures.
     let pictures = Facts { remote: in_steps, is_recorded: true, cannot_continue: true, ..REMOTE };
     assert_eq!(check(&pictures, Intent::Recording), Ok(()));
-    assert_eq!(check(&pictures, Intent::FlyOn), Err(Refusal::Now(NOT_FLOWN_AGAIN)));
+    for intent in [Intent::FlyOn, Intent::FlyAhead] {
+        assert_eq!(check(&pictures, intent), Err(Refusal::Now(NOT_FLOWN_AGAIN)));
+        assert_eq!(check(&Facts { cannot_continue: false, ..pictures }, intent), Ok(()));
+    }
     let remote = |is_ready, has_plans| Facts {
         remote: Some(RemoteFacts { is_ready, has_plans, opens_cli: false, is_in_steps: false }),
         ..REMOTE
@@ -152,6 +158,7 @@ fn a_real_craft_is_read_and_changed_with_permission() {
         (Intent::World, NOTHING_SIMULATED),
         (Intent::Line(Impact::Forbidden(NOTHING_MOVES)), NOTHING_MOVES),
         (Intent::Forecast, CONTROLLER_IS_REMOTE),
+        (Intent::FlyAhead, CONTROLLER_IS_REMOTE),
     ];
     assert_eq!(refused(&Facts { access: Access::Changing, ..REMOTE }), table(&never));
     let unpermitted = [Intent::Upload, Intent::Save, Intent::Line(Impact::Changes)];

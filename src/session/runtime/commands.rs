@@ -7,8 +7,6 @@ use super::Session;
 use super::interface::UploadTo;
 use super::limits::refuse_command;
 use crate::fc::Access;
-use crate::flight::forecast;
-use crate::lookahead::VehicleCopy;
 use crate::session::command::Command;
 use crate::session::flight_feed::FlightPart;
 use crate::session::policy::{self, Facts, Intent, RemoteFacts};
@@ -83,11 +81,8 @@ impl Session {
                 let changed = self.vehicle.apply(&VehicleCommand::World(change)).accepted();
                 reply.send(changed.map_err(|refusal| refusal.to_string()));
             }
-            Command::CopyVehicle(reply) => {
-                let copy = forecast::check_possible(&self.vehicle).map(|()| VehicleCopy {
-                    vehicle: Box::new(self.copy_of_shown()),
-                    takeoff_m: self.takeoff_m,
-                });
+            Command::CopyVehicle { reply, .. } => {
+                let copy = self.copy_for_forecast();
                 reply.send(copy);
             }
             Command::RecordedFlight(reply) => reply.send(self.recorded_flight()),

@@ -5,7 +5,7 @@ use tokio::sync::oneshot;
 use crate::fc::{Access, Denial, Impact, NOTHING_MOVES};
 use crate::link::Request;
 use crate::link::proto::command_line::LineReply;
-use crate::session::command::{CliOutput, Command};
+use crate::session::command::{CliOutput, Command, REWOUND_FOR_CLIENTS};
 use crate::session::policy::{REWOUND, Refusal};
 
 /// Answers a command with the reason for its refusal. Returns the reason as a notice if the command has no answer.
@@ -21,7 +21,7 @@ pub(in crate::session) fn refuse_command(command: Command, refusal: Refusal) -> 
         Command::Download { reply } => reply.send(Err(sentence)),
         Command::ReadSettings { reply } => reply.send(Err(sentence)),
         Command::Save { reply } | Command::World { reply, .. } => reply.send(Err(sentence)),
-        Command::CopyVehicle(reply) => reply.send(Err(sentence)),
+        Command::CopyVehicle { reply, .. } => reply.send(Err(sentence)),
         _ => return Some(sentence),
     }
     None
@@ -38,8 +38,27 @@ pub(super) fn refuse_request(request: Request, access: Access) -> Result<Request
     }
 }
 
+/// Returns the request of a client, unless it would change the vehicle that waits while an earlier instant is
+/// shown. Such a request is refused with the reason.
+pub(super) fn refuse_changing_request(request: Request) -> Option<Request> {
+    // Leaving the command line changes nothing.
+    let leaves = matches!(&request, Request::Cli { line, .. } if is_exit_without_reboot(line));
+    if leaves || impact_of_request(&request) == Impact::Reads {
+        return Some(request);
+    }
+    refuse(request, REWOUND_FOR_CLIENTS);
+    None
+}
+
+/// Returns `true` if a line only leaves the command line.
+fn is_exit_without_reboot(line: &str) -> bool {
+    let mut words = line.split_ascii_whitespace();
+    let mut next_is = |word: &str| words.next().is_some_and(|next| next.eq_ignore_ascii_case(word));
+    next_is("exit") && next_is("noreboot") && words.next().is_none()
+}
+
 /// Returns the impact of a client's request on the craft.
-pub(super) fn impact_of_request(request: &Request) -> Impact {
+fn impact_of_request(request: &Request) -> Impact {
     match request {
         Request::Msp { code, payload, .. } => Impact::from_message(*code, payload),
         Request::Cli { line, .. } => Impact::from_line(line),

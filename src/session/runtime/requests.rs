@@ -5,8 +5,7 @@ use std::task::{Context, Poll};
 use std::time::{Duration, Instant};
 
 use super::interface::restart_console;
-use super::limits::refuse_request;
-use super::rewind::refuse_changing_request;
+use super::limits::{refuse_changing_request, refuse_request};
 use super::{SLICE, Session};
 use crate::events::SessionEvent;
 use crate::link::Request;

@@ -3,19 +3,18 @@
 use std::time::{Duration, Instant};
 
 use super::interface::output;
-use super::limits::{impact_of_request, refuse};
 use super::requests::FreshRc;
 use super::{SLICE, Session};
 use crate::events::Event;
-use crate::fc::{CraftSettings, Impact, RemoteLink};
-use crate::link::Request;
+use crate::fc::{CraftSettings, RemoteLink};
+use crate::flight::forecast;
+use crate::lookahead::{FlownAgain, FlyAgain, FlyingAgain, VehicleCopy};
 use crate::runner::SPEED_RANGE;
 use crate::runner::{Runner, Subscriber, tick};
 use crate::session::ReplyTo;
 use crate::session::arming::ArmingWatch;
-use crate::session::command::{BEGINNING_LOST, CliOutput, REWOUND_FOR_CLIENTS, Seek};
+use crate::session::command::{BEGINNING_LOST, CliOutput, Seek};
 use crate::session::flight_feed::{FlightFeed, FlightPart};
-use crate::session::fly_again::{FlownAgain, FlyAgain, FlyingAgain};
 use crate::session::policy::{NOT_FLOWN_AGAIN, NOT_RECORDED};
 use crate::session::seek::{Target, target};
 use crate::signals::SimTime;
@@ -343,6 +342,27 @@ impl Session {
         self.again.is_some() || self.runner.link.as_ref().is_some_and(RemoteLink::keeps_past)
     }
 
+    /// Returns the flight of a remote firmware since its boot, to fly it again.
+    fn again(&mut self) -> Option<FlyAgain> {
+        let past = self.runner.link.as_mut().and_then(RemoteLink::past).map(FlyAgain::of);
+        past.or_else(|| self.again.clone())
+    }
+
+    /// Returns a copy of the vehicle that is shown, for a forecast. Of an executable it may be a tenth of a second older.
+    ///
+    /// # Errors
+    /// Returns the reason as a sentence if it cannot be flown ahead.
+    pub(super) fn copy_for_forecast(&mut self) -> Result<VehicleCopy, String> {
+        let takeoff_m = self.takeoff_m;
+        let head = self.vehicle.time();
+        if let Some(picture) = self.timeline.as_ref().and_then(|timeline| timeline.picture(head)) {
+            let again = Some(self.again().ok_or(NOT_FLOWN_AGAIN)?);
+            return Ok(VehicleCopy { vehicle: Box::new(picture), takeoff_m, again });
+        }
+        forecast::check_possible(&self.vehicle)?;
+        Ok(VehicleCopy { vehicle: Box::new(self.copy_of_shown()), takeoff_m, again: None })
+    }
+
     /// Begins to fly the flight of a remote firmware again, up to the instant that is shown.
     fn fly_again(&mut self) {
         if self.flying_again.take().is_some() {
@@ -354,8 +374,7 @@ impl Session {
             self.notice(NOTHING_EARLIER);
             return;
         };
-        let past = self.runner.link.as_mut().and_then(RemoteLink::past).map(FlyAgain::of);
-        let Some(again) = past.or_else(|| self.again.clone()) else {
+        let Some(again) = self.again() else {
             self.notice(NOT_FLOWN_AGAIN);
             return;
         };
@@ -463,23 +482,4 @@ impl Subscriber<Vehicle> for Recorders<'_> {
             feed.look(vehicle);
         }
     }
-}
-
-/// Returns the request of a client, unless it would change the vehicle that waits while an earlier instant is
-/// shown. Such a request is refused with the reason.
-pub(super) fn refuse_changing_request(request: Request) -> Option<Request> {
-    // Leaving the command line changes nothing.
-    let leaves = matches!(&request, Request::Cli { line, .. } if is_exit_without_reboot(line));
-    if leaves || impact_of_request(&request) == Impact::Reads {
-        return Some(request);
-    }
-    refuse(request, REWOUND_FOR_CLIENTS);
-    None
-}
-
-/// Returns `true` if a line only leaves the command line.
-fn is_exit_without_reboot(line: &str) -> bool {
-    let mut words = line.split_ascii_whitespace();
-    let mut next_is = |word: &str| words.next().is_some_and(|next| next.eq_ignore_ascii_case(word));
-    next_is("exit") && next_is("noreboot") && words.next().is_none()
 }

@@ -58,7 +58,9 @@ fn look_ahead_again(state: &mut Shared) -> Option<Effect> {
     let look_ahead = state.forecast.look_ahead.as_ref()?;
     let asked = &look_ahead.asked;
     let is_old = !asked.waiting && !within(now, asked.at, LOOK_AHEAD_INTERVAL) && look_ahead.from != time;
-    (is_old || asked.is_lost(now)).then(|| ask_look_ahead(state))
+    // An executable first computes its flight up to now, which may take long.
+    let is_lost = asked.is_lost(now) && state.view.remote.is_none();
+    (is_old || is_lost).then(|| ask_look_ahead(state))
 }
 
 fn ask_look_ahead(state: &mut Shared) -> Effect {
@@ -78,11 +80,13 @@ pub(in crate::ui) fn toggle_look_ahead(state: &mut Shared) -> Vec<Effect> {
     }
     // One ghost at a time.
     state.forecast.dismiss();
+    report_other_process(state);
     vec![ask_look_ahead(state)]
 }
 
 /// Requests a flight ahead with something going wrong now, or if nothing flies, from home.
 pub(in crate::ui) fn ask_what_if(state: &mut Shared, what_if: WhatIf, flies: bool) -> Vec<Effect> {
+    report_other_process(state);
     let (now, settings) = (state.now, to_upload(state));
     let from_home = if flies { "" } else { ", flown from home" };
     let title = format!("{}{from_home}", what_if.title);
@@ -94,6 +98,14 @@ pub(in crate::ui) fn ask_what_if(state: &mut Shared, what_if: WhatIf, flies: boo
     asked.ask(forecast.revision, now);
     forecast.what_if = Some(ChosenWhatIf { title, asked });
     vec![effect]
+}
+
+/// Reports that a forecast of the flight of an executable takes a while.
+fn report_other_process(state: &mut Shared) {
+    if state.view.remote.is_some() {
+        let text = "Another process of the firmware boots, computes the flight up to now and flies ahead.";
+        state.notify(Severity::Info, text);
+    }
 }
 
 /// Requests a flight ahead with another value of a setting, and the same one without it.

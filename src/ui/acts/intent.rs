@@ -34,7 +34,8 @@ pub(in crate::ui) fn intent_of(state: &Shared, action: Action) -> Intent {
         Action::LookAhead if state.forecast.looks_ahead() => Intent::Read,
         // So does ending the survey.
         Action::WhereMay if state.survey.sweep().is_some() => Intent::Read,
-        Action::LookAhead | Action::WhatIf | Action::WhereMay | Action::GoNoGo => Intent::Forecast,
+        Action::LookAhead | Action::WhatIf => Intent::FlyAhead,
+        Action::WhereMay | Action::GoNoGo => Intent::Forecast,
         Action::Panel(action) => of_panel(action),
         _ => Intent::Read,
     }

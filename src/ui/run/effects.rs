@@ -179,7 +179,8 @@ pub(super) fn carry_out(
         }
         Effect::Forecast(job) => {
             let (forecaster, answers) = (threads.forecaster.clone(), answers.clone());
-            Command::CopyVehicle(ReplyTo::new(move |copy: Option<Result<VehicleCopy, String>>| match copy {
+            let continues = job.request.continues();
+            let reply = ReplyTo::new(move |copy: Option<Result<VehicleCopy, String>>| match copy {
                 Some(Ok(copy)) => forecaster.order(job, copy),
                 Some(Err(reason)) => {
                     let (revision, kind) = (job.revision, job.request.kind());
@@ -187,12 +188,13 @@ pub(super) fn carry_out(
                 }
                 // The session ends.
                 None => {}
-            }))
+            });
+            Command::CopyVehicle { continues, reply }
         }
         Effect::Survey(job) => {
             threads.surveyor.want(job.revision);
             let (surveyor, answers) = (threads.surveyor.clone(), answers.clone());
-            Command::CopyVehicle(ReplyTo::new(move |copy: Option<Result<VehicleCopy, String>>| match copy {
+            let reply = ReplyTo::new(move |copy: Option<Result<VehicleCopy, String>>| match copy {
                 Some(Ok(copy)) => surveyor.order(job, copy),
                 Some(Err(reason)) => {
                     let news = SurveyNews::Refused(reason);
@@ -200,7 +202,8 @@ pub(super) fn carry_out(
                 }
                 // The session ends.
                 None => {}
-            }))
+            });
+            Command::CopyVehicle { continues: false, reply }
         }
         Effect::EndSurvey(revision) => {
             threads.surveyor.want(revision);

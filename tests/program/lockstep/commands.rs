@@ -106,9 +106,8 @@ fn landing_time(screen: &str) -> Option<f64> {
     })
 }
 
-#[test]
-fn the_live_flight_of_an_executable_is_flown_on_from_an_earlier_instant_and_again_from_there() {
-    let bench = bench();
+/// Returns the screen over the flying stand-in.
+fn live(bench: &Bench) -> Terminal {
     let (plan, build) = (bench.path("north.toml"), bench.path("old.elf"));
     let mut terminal = Terminal::betadeck(
         160,
@@ -121,11 +120,17 @@ fn the_live_flight_of_an_executable_is_flown_on_from_an_earlier_instant_and_agai
             FLYING,
             "--fresh",
             "--no-ports",
-            "--speed",
-            "20",
         ],
     );
     terminal.until_shown("GPS fix with 12 satellites");
+    terminal
+}
+
+#[test]
+fn the_live_flight_of_an_executable_is_flown_on_from_an_earlier_instant_and_again_from_there() {
+    let bench = bench();
+    let mut terminal = live(&bench);
+    terminal.send(":speed 20\r");
     terminal.send("F");
     let landed = landing(&mut terminal);
     for _ in 0..2 {
@@ -143,4 +148,37 @@ fn the_live_flight_of_an_executable_is_flown_on_from_an_earlier_instant_and_agai
         let again = landing(&mut terminal);
         assert!((again - landed).abs() < 0.3, "{landed} s, {again} s");
     }
+}
+
+#[test]
+fn the_live_flight_of_an_executable_is_looked_ahead_with_and_without_a_fault() {
+    let bench = bench();
+    let mut terminal = live(&bench);
+    terminal.send(":what-if rx-loss\r");
+    terminal.until_shown("so there is no flight to look ahead to");
+    terminal.send("F");
+    terminal.until_shown("◆ APPROACHING WP0");
+    terminal.send(":sim.pause\r");
+    terminal.send(":what-if mag-bias\r");
+    terminal.until_shown("gets no magnetometer data");
+    terminal.send(":what-if wind\r");
+    terminal.until_shown("What if wind +8 m/s: ");
+    terminal.send("L");
+    // Its line on the map ends with "COMPLETE in 0:21, 98 % left".
+    let ahead = |screen: &str| time_after(screen, "look-ahead: COMPLETE in ");
+    terminal.until("the look-ahead", |terminal| ahead(&terminal.screen()).is_some());
+    let left = ahead(&terminal.screen()).expect("the screen is as before");
+    let now = time_after(&terminal.screen(), "m left ").expect("the time of the flight");
+    terminal.send("L:sim.pause\r:speed 20\r");
+    let landed = landing(&mut terminal);
+    assert!((now + left - landed).abs() < 2.0, "{left} s after {now} s, landed at {landed} s");
+}
+
+/// Returns the time in minutes and seconds behind these words, s.
+fn time_after(screen: &str, words: &str) -> Option<f64> {
+    let (_, rest) = screen.split_once(words)?;
+    let time =
+        rest.trim_start().split(|letter: char| !(letter.is_ascii_digit() || letter == ':' || letter == '.'));
+    let (minutes, seconds) = time.into_iter().next()?.split_once(':')?;
+    Some(60.0 * minutes.parse::<f64>().ok()? + seconds.parse::<f64>().ok()?)
 }

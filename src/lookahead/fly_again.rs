@@ -76,8 +76,16 @@ impl FlyAgain {
         })
     }
 
+    /// Flies on this thread.
+    ///
+    /// # Errors
+    /// Returns the reason as a sentence.
+    pub fn fly(&self, until: SimTime, progress: &Progress) -> Result<FlownAgain, String> {
+        (self.0)(until, progress)
+    }
+
     /// Starts the flight on a thread of its own. The present thread is unparked at its end.
-    pub(super) fn start(&self, until: SimTime) -> std::io::Result<FlyingAgain> {
+    pub fn start(&self, until: SimTime) -> std::io::Result<FlyingAgain> {
         let (done, result) = mpsc::channel();
         let (fly, waiting) = (Arc::clone(&self.0), std::thread::current());
         let progress = Arc::new(Progress::default());
@@ -105,7 +113,7 @@ impl fmt::Debug for FlyAgain {
 
 /// A flight that is flown again at the moment.
 #[derive(Debug)]
-pub(super) struct FlyingAgain {
+pub struct FlyingAgain {
     until: SimTime,
     progress: Arc<Progress>,
     /// `None` once the result is taken.
@@ -125,12 +133,12 @@ impl Drop for FlyingAgain {
 
 impl FlyingAgain {
     /// Returns the instant that the flight has reached, and the one that it goes to.
-    pub(super) fn progress(&self) -> (SimTime, SimTime) {
+    pub fn progress(&self) -> (SimTime, SimTime) {
         (SimTime(self.progress.reached_us.load(Ordering::Relaxed)), self.until)
     }
 
     /// Returns the instant and the result; `None` while the flight goes on.
-    pub(super) fn result(&mut self) -> Option<(SimTime, Result<FlownAgain, String>)> {
+    pub fn result(&mut self) -> Option<(SimTime, Result<FlownAgain, String>)> {
         let result = match self.result.as_ref()?.try_recv() {
             Ok(result) => result,
             Err(mpsc::TryRecvError::Empty) => return None,
