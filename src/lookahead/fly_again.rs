@@ -76,14 +76,6 @@ impl FlyAgain {
         })
     }
 
-    /// Flies on this thread.
-    ///
-    /// # Errors
-    /// Returns the reason as a sentence.
-    pub fn fly(&self, until: SimTime, progress: &Progress) -> Result<FlownAgain, String> {
-        (self.0)(until, progress)
-    }
-
     /// Starts the flight on a thread of its own. The present thread is unparked at its end.
     pub fn start(&self, until: SimTime) -> std::io::Result<FlyingAgain> {
         let (done, result) = mpsc::channel();
