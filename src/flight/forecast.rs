@@ -109,12 +109,14 @@ impl ForecastRun {
         let wind = vehicle.world_status().map(|world| world.wind).unwrap_or_default();
         let command = what_if.command(wind)?;
         let flies = check_flies(&vehicle);
-        if vehicle.embedded().is_none() {
-            // Another program flies no plan from home here.
-            flies.clone()?;
+        let flies = if vehicle.embedded().is_some() {
+            flies.is_ok()
+        } else {
+            // A remote flight controller does not fly the plan from home here.
+            flies?;
             check_reaches_remote(&vehicle, &command)?;
-        }
-        let flies = flies.is_ok();
+            true
+        };
         let begins_now = flies || matches!(command, WorldCommand::SetWind(_));
         if begins_now {
             apply(&mut vehicle, &command.clone().into())?;

@@ -353,7 +353,7 @@ impl Lockstep {
         }
     }
 
-    /// Uses the inputs of this run, if they are kept. Without the rest they would be of no use, so an error ends them.
+    /// Passes the inputs of this run to `work`, if they are kept. An incomplete record cannot be flown again, so an error ends it.
     fn keep<T>(&mut self, work: impl FnOnce(&mut Inputs) -> io::Result<T>) -> Option<T> {
         let Some(Ok(inputs)) = &mut self.inputs else { return None };
         match work(inputs) {

@@ -19,6 +19,8 @@ use crate::ui::shared::Shared;
 
 /// The shortest time between two look-aheads while it is on.
 const LOOK_AHEAD_INTERVAL: Duration = Duration::from_secs(1);
+/// The time without an answer after which a forecast is requested again.
+const LOST_AFTER: Duration = Duration::from_secs(30);
 
 /// Requests an estimate of the open plan if the plan, the settings or the air have changed since the last estimate.
 pub(in crate::ui) fn follow_plan(state: &mut Shared) -> Option<Effect> {
@@ -46,7 +48,7 @@ pub(in crate::ui) fn follow_plan(state: &mut Shared) -> Option<Effect> {
 
 /// Requests a forecast again if it is outdated or its answer was lost.
 pub(in crate::ui) fn repeat(state: &mut Shared) -> Option<Effect> {
-    if state.forecast.estimate.is_lost(state.now) {
+    if state.forecast.estimate.is_lost(state.now, LOST_AFTER) {
         state.forecast.basis = None;
         return follow_plan(state);
     }
@@ -58,9 +60,9 @@ fn look_ahead_again(state: &mut Shared) -> Option<Effect> {
     let look_ahead = state.forecast.look_ahead.as_ref()?;
     let asked = &look_ahead.asked;
     let is_old = !asked.waiting && !within(now, asked.at, LOOK_AHEAD_INTERVAL) && look_ahead.from != time;
-    // An executable first computes its flight up to now, which may take long.
-    let is_lost = asked.is_lost(now) && state.view.remote.is_none();
-    (is_old || is_lost).then(|| ask_look_ahead(state))
+    // An executable first computes its flight up to now.
+    let patience = if state.view.remote.is_some() { LOST_AFTER * 20 } else { LOST_AFTER };
+    (is_old || asked.is_lost(now, patience)).then(|| ask_look_ahead(state))
 }
 
 fn ask_look_ahead(state: &mut Shared) -> Effect {
@@ -86,7 +88,9 @@ pub(in crate::ui) fn toggle_look_ahead(state: &mut Shared) -> Vec<Effect> {
 
 /// Requests a flight ahead with something going wrong now, or if nothing flies, from home.
 pub(in crate::ui) fn ask_what_if(state: &mut Shared, what_if: WhatIf, flies: bool) -> Vec<Effect> {
-    report_other_process(state);
+    if flies {
+        report_other_process(state);
+    }
     let (now, settings) = (state.now, to_upload(state));
     let from_home = if flies { "" } else { ", flown from home" };
     let title = format!("{}{from_home}", what_if.title);

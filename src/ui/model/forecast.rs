@@ -17,9 +17,6 @@ use crate::ui::model::settings::Assignment;
 pub(in crate::ui) use estimate_basis::EstimateBasis;
 pub(in crate::ui) use setting_change::difference;
 
-/// The time without an answer after which a forecast is requested again.
-const LOST_AFTER: Duration = Duration::from_secs(30);
-
 /// A requested forecast, and the newest answer.
 #[derive(Debug, Default)]
 pub(in crate::ui) struct Asked {
@@ -40,9 +37,9 @@ impl Asked {
         self.waiting = true;
     }
 
-    /// Returns `true` if no answer will come any more, as when the session did not keep up.
-    pub(in crate::ui) fn is_lost(&self, now: Duration) -> bool {
-        self.waiting && !within(now, self.at, LOST_AFTER)
+    /// Returns `true` if no answer has come for longer than `patience`, as when the session did not keep up.
+    pub(in crate::ui) fn is_lost(&self, now: Duration, patience: Duration) -> bool {
+        self.waiting && !within(now, self.at, patience)
     }
 
     pub(in crate::ui) fn forecast(&self) -> Option<&Forecast> {

@@ -33,7 +33,7 @@ const DISCONNECTED: u8 = 6;
 pub(super) struct Inputs {
     file: BufWriter<Arc<File>>,
     folder: Arc<Vec<(OsString, Vec<u8>)>>,
-    /// The bytes and the steps so far. No more are kept after [`MOST_BYTES`].
+    /// The bytes and the steps so far. The record ends at [`MOST_BYTES`].
     bytes: u64,
     steps: u64,
 }
