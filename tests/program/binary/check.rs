@@ -350,3 +350,15 @@ fn the_worst_moment_is_opened_on_the_screen_and_a_flight_on_the_screen_becomes_a
     let ran = sandbox.run(&["check", "written.toml"]).exits(0);
     assert!(ran.out.contains("complete"), "{}", ran.out);
 }
+
+#[test]
+fn the_embedded_firmware_keeps_the_properties_that_master_breaks() {
+    let folder = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("plans/findings");
+    let sandbox = Sandbox::new();
+    for entry in std::fs::read_dir(folder).expect("the folder of the findings") {
+        let file = entry.expect("an entry").path();
+        // A plan that leads through the fence is refused at the start.
+        let code = i32::from(file.ends_with("fence-slides.toml"));
+        sandbox.run(&["check", file.to_str().expect("a plain name"), "--seeds", "1"]).exits(code);
+    }
+}

@@ -103,7 +103,9 @@ fn on_the_wall_clock_a_client_and_a_script_reach_the_firmware_through_the_doors(
     client.set_read_timeout(Some(PATIENCE)).unwrap();
     // The script switches AUTOPILOT on with its sixth channel.
     let has_switch = |rc: &[u8]| rc[10..12] == 2000_u16.to_le_bytes();
+    let deadline = Instant::now() + PATIENCE;
     while !msp::ask(&mut client, 105, &[]).is_some_and(|rc| has_switch(&rc)) {
+        assert!(Instant::now() < deadline, "no frame of the script at the firmware");
         std::thread::sleep(Duration::from_millis(20));
     }
     script.end();
