@@ -33,9 +33,9 @@ pub(super) struct LiveArgs<'a> {
 
 /// The interval at which the state of the doors is published.
 const VIEW: Duration = Duration::from_millis(250);
-/// The distance of the TCP and RC doors from the ports of a firmware on the wall clock. Its eight serial ports follow
-/// each other.
-const ABOVE: u16 = 10;
+/// The TCP and RC doors beside a firmware on the wall clock, which has the usual ports itself.
+const TCP_BESIDE: u16 = 7761;
+const RC_BESIDE: u16 = 11004;
 
 /// The open doors on the side of the sockets.
 #[derive(Debug)]
@@ -113,12 +113,15 @@ pub(super) async fn open(
     Ok(Some(Opened { doors: OpenDoors { stop, keeper }, endpoints, addresses, notices }))
 }
 
-/// Returns the ports of the TCP and RC doors beside a firmware that has the usual ones itself: ten above its own, or
-/// any free ones.
-fn beside(listen: IpAddr, ports: FirmwarePorts) -> (u16, u16) {
-    let tcp = ports.tcp.checked_add(ABOVE).filter(|port| TcpListener::bind((listen, *port)).is_ok());
-    let rc = ports.udp.rc.checked_add(ABOVE).filter(|port| UdpSocket::bind((listen, *port)).is_ok());
-    (tcp.unwrap_or(0), rc.unwrap_or(0))
+/// Returns the ports of the TCP and RC doors beside a firmware on the wall clock. They are any free ones if those for it
+/// are taken, or if the firmware has other ports than usual: several may then run side by side.
+fn beside(listen: IpAddr, firmware: FirmwarePorts) -> (u16, u16) {
+    if !firmware.are_usual() {
+        return (0, 0);
+    }
+    let tcp = TcpListener::bind((listen, TCP_BESIDE)).map_or(0, |_| TCP_BESIDE);
+    let rc = UdpSocket::bind((listen, RC_BESIDE)).map_or(0, |_| RC_BESIDE);
+    (tcp, rc)
 }
 
 /// Returns a sentence about doors that are open to other machines: the actions that they allow.

@@ -89,7 +89,7 @@ pub struct FirmwareArgs {
     /// An executable is started in a folder of its own below the state directory, gets the state of the embedded
     /// physics and ends with this program. It flies in simulated time (--clock). --tcp-port and --udp-ports name its
     /// ports, --fdm-dialect and --motor-order the format of its packets. On the wall clock it has these ports itself,
-    /// and the TCP and RC doors are ten above them: 5771 and 9014.
+    /// and the TCP and RC doors are 7761 and 11004, or any free ones.
     #[arg(long, value_name = "WHICH", help_heading = "Firmware")]
     pub firmware: Option<FirmwareChoice>,
 
