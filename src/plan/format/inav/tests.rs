@@ -5,7 +5,7 @@ use super::super::loss::Severity;
 use crate::geo::LatLon;
 use crate::plan::format::{Format, PlanError, PlanFile, ReadOptions, read, report, write};
 use crate::plan::record::WaypointRecord;
-use crate::plan::{HoldPattern, Waypoint, WaypointType};
+use crate::plan::{HoldPattern, MAX_WAYPOINTS, Waypoint, WaypointType};
 
 mod samples;
 mod written;

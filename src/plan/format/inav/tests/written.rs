@@ -250,6 +250,13 @@ proptest! {
     fn items_carry_all_that_no_finding_names(file in plan_file()) {
         for format in FORMATS {
             let text = public(&write(&file, format).text());
+            // A LAND that waits becomes two items, which may be too many for a plan.
+            let waits = |waypoint: &&Waypoint| waypoint.kind == WaypointType::Land && !waypoint.duration.is_zero();
+            let items = file.plan.waypoints.len() + file.plan.waypoints.iter().filter(waits).count();
+            if let Err(errors) = try_read(&text, format, &ReadOptions::default()) {
+                prop_assert!(items > MAX_WAYPOINTS && errors[0].contains("the mission has"), "{:?}", errors);
+                continue;
+            }
             let back = read_text(&text, format);
             let mut rest = back.plan.waypoints.iter();
             for index in untouched(&file, format) {
