@@ -5,7 +5,7 @@
 #![allow(clippy::disallowed_methods, reason = "slices are cut by wall time, so that a newer job never waits")]
 
 use std::any::Any;
-use std::sync::mpsc;
+use std::sync::{Arc, mpsc};
 use std::thread;
 use std::time::{Duration, Instant};
 
@@ -95,10 +95,22 @@ struct Order {
     copy: VehicleCopy,
 }
 
-/// A handle to the thread, which ends when the handle is dropped.
+/// A handle to the thread. When the last one is dropped, the thread ends, with the processes that it has started.
 #[derive(Debug, Clone)]
-pub struct Forecaster {
-    orders: mpsc::Sender<Order>,
+pub struct Forecaster(Arc<Thread>);
+
+#[derive(Debug)]
+struct Thread {
+    orders: Option<mpsc::Sender<Order>>,
+    handle: Option<thread::JoinHandle<()>>,
+}
+
+impl Drop for Thread {
+    fn drop(&mut self) {
+        self.orders = None;
+        // A panic of the thread was reported.
+        drop(self.handle.take().map(thread::JoinHandle::join));
+    }
 }
 
 impl Forecaster {
@@ -108,17 +120,19 @@ impl Forecaster {
     /// Returns an error if the system cannot start a thread.
     pub fn start(answer: impl FnMut(ForecastReply) + Send + 'static) -> std::io::Result<Self> {
         let (orders, incoming) = mpsc::channel();
-        thread::Builder::new().name("forecast".to_owned()).spawn(move || {
+        let handle = thread::Builder::new().name("forecast".to_owned()).spawn(move || {
             yield_to_the_flight();
             Worker { answer, flying: Vec::new() }.run(&incoming);
         })?;
-        Ok(Self { orders })
+        Ok(Self(Arc::new(Thread { orders: Some(orders), handle: Some(handle) })))
     }
 
     /// Orders a forecast of `job` with this copy of the vehicle.
     pub fn order(&self, job: ForecastJob, copy: VehicleCopy) {
         // The thread ends only together with this handle.
-        drop(self.orders.send(Order { job, copy }));
+        if let Some(orders) = &self.0.orders {
+            drop(orders.send(Order { job, copy }));
+        }
     }
 }
 
@@ -179,7 +193,12 @@ impl Flying {
         None
     }
 
-    /// Returns `true` while another process computes.
+    /// Returns `true` if another process of an executable flies it.
+    fn is_by_process(&self) -> bool {
+        !matches!(self.controller, Controller::Embedded)
+    }
+
+    /// Returns `true` while another process computes the flight up to the present instant.
     fn waits(&self) -> bool {
         matches!(self.controller, Controller::FlyingAgain(_))
     }
@@ -224,7 +243,9 @@ impl<A: FnMut(ForecastReply)> Worker<A> {
         if self.flying.iter().any(|flying| flying.kind == kind && flying.revision > revision) {
             return;
         }
-        self.flying.retain(|flying| flying.kind != kind);
+        // One process beside the one that flies is enough.
+        let is_replaced = |flying: &Flying| flying.kind == kind || again.is_some() && flying.is_by_process();
+        self.flying.retain(|flying| !is_replaced(flying));
         let run = match request {
             ForecastRequest::PlanEstimate { plan, settings } => {
                 ForecastRun::plan_estimate(*vehicle, &plan, &settings, takeoff_m)

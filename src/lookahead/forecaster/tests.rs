@@ -1,7 +1,11 @@
+use std::sync::atomic::{AtomicUsize, Ordering};
+
 use super::*;
 use crate::flight::FlightSetup;
-use crate::flight::forecast::ForecastEnd;
+use crate::flight::forecast::{ForecastEnd, WHAT_IFS};
+use crate::lookahead::FlyAgain;
 use crate::plan::builtin::BuiltinPlan;
+use crate::vehicle::VehicleCommand;
 
 fn copy() -> VehicleCopy {
     let (vehicle, _) = FlightSetup::default().build().unwrap();
@@ -27,10 +31,10 @@ fn start_on(jobs: Vec<ForecastJob>) -> (Forecaster, mpsc::Receiver<ForecastReply
     for job in jobs {
         orders.send(Order { job, copy: copy() }).unwrap();
     }
-    thread::spawn(move || {
+    let handle = thread::spawn(move || {
         Worker { answer: move |reply| drop(answers.send(reply)), flying: Vec::new() }.run(&incoming);
     });
-    (Forecaster { orders }, answered)
+    (Forecaster(Arc::new(Thread { orders: Some(orders), handle: Some(handle) })), answered)
 }
 
 #[test]
@@ -60,4 +64,40 @@ fn kinds_do_not_wait_for_each_other() {
     assert!(refused.forecast.unwrap_err().contains("disarmed"));
     let flown = answered.recv().unwrap().forecast.unwrap();
     assert!(!matches!(flown.end, ForecastEnd::Endless));
+}
+
+/// Returns a copy of a vehicle that takes off. Its flight controller is flown again without an end, until that is stopped;
+/// `begun` counts the flights so far, and `running` those under way.
+fn copy_by_process([begun, running]: &[Arc<AtomicUsize>; 2]) -> VehicleCopy {
+    let mut copy = copy();
+    copy.vehicle.apply(&VehicleCommand::StartPilot(10.0)).accepted().unwrap();
+    let (begun, running) = (Arc::clone(begun), Arc::clone(running));
+    let again = FlyAgain::new(move |_, progress| {
+        running.fetch_add(1, Ordering::SeqCst);
+        begun.fetch_add(1, Ordering::SeqCst);
+        while !progress.stopped().load(Ordering::SeqCst) {
+            thread::yield_now();
+        }
+        running.fetch_sub(1, Ordering::SeqCst);
+        Err("it was stopped".to_owned())
+    });
+    VehicleCopy { again: Some(again), ..copy }
+}
+
+#[test]
+fn one_other_process_flies_at_a_time_and_none_when_the_program_ends() {
+    let (forecaster, _answered) = start();
+    let counts: [Arc<AtomicUsize>; 2] = Default::default();
+    let now = || counts.each_ref().map(|count| count.load(Ordering::SeqCst));
+    let what_if =
+        ForecastRequest::WhatIf { what_if: WHAT_IFS[0].clone(), plan: Box::default(), settings: Vec::new() };
+    for (revision, request) in (1..).zip([what_if, ForecastRequest::LookAhead]) {
+        forecaster.order(ForecastJob { revision, request }, copy_by_process(&counts));
+        while now()[0] < revision as usize {
+            thread::yield_now();
+        }
+        assert_eq!(now()[1], 1, "flights under way");
+    }
+    drop(forecaster);
+    assert_eq!(now(), [2, 0]);
 }

@@ -3,7 +3,7 @@
 use std::io::{Read, Write};
 use std::net::TcpStream;
 use std::process::Command;
-use std::time::Duration;
+use std::time::{Duration, Instant};
 
 use super::program::{PATIENCE, Serve};
 
@@ -27,7 +27,8 @@ fn status(serve: &Serve) -> String {
 }
 
 #[test]
-fn a_stopped_program_tells_the_time_that_it_lost() {
+fn a_stopped_program_reports_the_time_that_it_lost() {
+    let start = Instant::now();
     let mut serve = Serve::start("1");
     // The clock runs now. Time before its start would not be lost.
     serve.wait("fix", |event| event["event"] == "gps_fix");
@@ -40,5 +41,8 @@ fn a_stopped_program_tells_the_time_that_it_lost() {
             .is_some_and(|text| text.starts_with("Real time was lost: ") && text.contains(" ran at 0."))
     });
     assert!(status(&serve).contains("\r\nReal time lost: "), "{}", status(&serve));
-    assert_eq!(serve.notices("Real time was lost"), 1, "once a minute at most");
+    // A busy machine loses more time, and needs more than a minute for this test.
+    let notices = serve.notices("Real time was lost");
+    let minutes = start.elapsed().as_secs() as usize / 60;
+    assert!((1..=1 + minutes).contains(&notices), "{notices} in {minutes} min, once a minute at most");
 }

@@ -12,6 +12,8 @@ pub(super) const GROUP: Group = Group {
         Act("rc.cut", Shows("RC CUT")),
         Again("rc.cut", Hides("RC CUT")),
         Again("plan.upload", Shows("Uploaded slow.toml: 2 waypoints.")),
+        // The RC signal counts as recovered only after half a second of flight time.
+        Wait("✓ Ready."),
         Act("flight.arm", Shows("● ARMED")),
         Act("flight.throttle", Shows("Armed, on the ground")),
         Act("flight.autopilot", Shows("ARMED AUTOPILOT")),
