@@ -460,7 +460,7 @@ impl RemoteLink {
         let frame = vehicle.local_frame().copied();
         let simulated = is_fed.then(|| Simulated {
             home_m: frame.map(|frame| frame.alt_amsl_m),
-            commanded: rescue::is_on(observer, &vehicle.transmitter().sticks().channels),
+            commanded: rescue::is_on(observer, &vehicle.transmitter().newest().channels),
         });
         if let Some(mailbox) = vehicle.remote_mut() {
             self.remote.deliver(mailbox, frame.as_ref(), simulated);

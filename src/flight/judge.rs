@@ -76,6 +76,8 @@ pub struct Judge {
     state: NavState,
     /// Source of the last plan that was flown.
     source: PlanSource,
+    /// The reason of the last change to IDLE. A remote firmware may report it only once.
+    given_up: Option<AbortReason>,
     /// `true` if the fix was lost in a landing, or on the way home, which continues without it as a descent.
     lands_without_fix: bool,
 }
@@ -95,6 +97,7 @@ impl Judge {
             idle_since: None,
             state: NavState::Idle,
             source: PlanSource::Stored,
+            given_up: None,
             lands_without_fix: false,
         }
     }
@@ -136,11 +139,14 @@ impl Judge {
 
     fn note_state(&mut self, facts: &JudgeFacts) {
         if facts.state != self.state {
-            let fix_lost = facts.entered_for == Some(TransitionReason::GivenUp(AbortReason::GpsLost));
+            self.given_up = match facts.entered_for {
+                Some(TransitionReason::GivenUp(why)) => Some(why),
+                _ => None,
+            };
             match facts.state {
                 NavState::Idle => {
                     let may_land = self.state == NavState::Landing || self.source == PlanSource::Rth;
-                    self.lands_without_fix = may_land && fix_lost;
+                    self.lands_without_fix = may_land && self.given_up == Some(AbortReason::GpsLost);
                 }
                 // The firmware reports this state after a touchdown without a fix.
                 NavState::Complete => {}
@@ -258,20 +264,24 @@ impl Judge {
             self.idle_since = Some((since, facts.alt_m));
         }
         (facts.time.seconds_since(since) >= IDLE_S).then(|| {
-            let why: Cow<'static, str> = match facts.refusal {
-                // Its sentence begins with the giving up.
-                Some(Refusal::Aborted(AbortReason::Stalled)) => {
-                    "the craft made no progress: cycle the switch.".into()
-                }
-                Some(Refusal::Aborted(AbortReason::Flyaway)) => {
+            let given_up = match facts.refusal {
+                Some(Refusal::Aborted(why)) => Some(why),
+                _ => self.given_up,
+            };
+            let why: Cow<'static, str> = match (given_up, facts.refusal) {
+                // The sentences of these refusals begin with the giving up.
+                (Some(AbortReason::Stalled), _) => "the craft made no progress: cycle the switch.".into(),
+                (Some(AbortReason::Flyaway), _) => {
                     "the craft moved away from its waypoint: cycle the switch.".into()
                 }
-                Some(refusal) => refusal.sentence(),
-                None if facts.failsafe => "a failsafe procedure flies.".into(),
-                None if facts.entered_for == Some(TransitionReason::Disengage) => {
+                (_, Some(refusal)) => refusal.sentence(),
+                (Some(AbortReason::GpsLost), None) => "the GPS fix was lost.".into(),
+                (Some(AbortReason::NoPlan), None) => "the plan was cleared in flight.".into(),
+                _ if facts.failsafe => "a failsafe procedure flies.".into(),
+                _ if facts.entered_for == Some(TransitionReason::Disengage) => {
                     "the AUTOPILOT switch was turned off; turned on again it resumes.".into()
                 }
-                None => return Verdict::new(FlightResult::Aborted, UNEXPLAINED),
+                _ => return Verdict::new(FlightResult::Aborted, UNEXPLAINED),
             };
             Verdict::new(FlightResult::Aborted, format!("mission given up: {why}"))
         })
@@ -295,189 +305,4 @@ fn verdict(result: FlightResult, reason: &str) -> Option<Verdict> {
 }
 
 #[cfg(test)]
-mod tests {
-    use super::*;
-    use crate::telemetry::CrashCause;
-
-    fn facts(seconds: f64) -> JudgeFacts {
-        JudgeFacts {
-            time: SimTime::from_secs_f64(seconds),
-            engaged: true,
-            armed: true,
-            last_disarm: None,
-            state: NavState::Approaching,
-            entered_for: None,
-            alt_m: 10.0,
-            wp: 1,
-            source: PlanSource::Stored,
-            refusal: None,
-            failsafe: false,
-            ends_in_land: true,
-            lift_share: None,
-            touched_down: false,
-            crash: None,
-            diverged: false,
-        }
-    }
-
-    fn judge() -> Judge {
-        let mut judge = Judge::new(SimTime::from_secs_f64(100.0));
-        assert_eq!(judge.look(&facts(10.0)), None);
-        judge
-    }
-
-    #[test]
-    fn a_landed_plan_is_complete_and_an_injected_one_is_landed() {
-        for (source, result) in [
-            (PlanSource::Stored, FlightResult::Complete),
-            (PlanSource::Rth, FlightResult::Landed),
-            (PlanSource::Emergency, FlightResult::Landed),
-        ] {
-            let down = JudgeFacts {
-                armed: false,
-                engaged: false,
-                last_disarm: Some(DisarmReason::Landing),
-                state: NavState::Complete,
-                touched_down: true,
-                source,
-                ..facts(20.0)
-            };
-            assert_eq!(judge().look(&down).map(|v| v.result), Some(result));
-        }
-    }
-
-    #[test]
-    fn a_parked_plan_is_watched_for_five_seconds() {
-        let mut judge = judge();
-        let parked = |s| JudgeFacts { state: NavState::Complete, ends_in_land: false, ..facts(s) };
-        assert_eq!(judge.look(&parked(20.0)), None);
-        assert_eq!(judge.look(&parked(24.9)), None);
-        assert_eq!(judge.look(&parked(25.0)).map(|v| v.result), Some(FlightResult::Complete));
-    }
-
-    #[test]
-    fn a_refusal_must_stay_ten_seconds() {
-        let mut judge = Judge::new(SimTime::from_secs_f64(100.0));
-        let refused =
-            |s, why| JudgeFacts { engaged: false, refusal: Some(why), state: NavState::Idle, ..facts(s) };
-        assert_eq!(judge.look(&refused(10.0, Refusal::NoFix)), None);
-        assert_eq!(judge.look(&refused(15.0, Refusal::NoPlan)), None);
-        assert_eq!(judge.look(&refused(24.0, Refusal::NoPlan)), None);
-        assert_eq!(
-            judge.look(&refused(25.0, Refusal::NoPlan)).map(|v| v.result),
-            Some(FlightResult::Refused)
-        );
-    }
-
-    #[test]
-    fn a_landing_that_goes_on_without_a_fix_is_waited_for() {
-        let mut judge = judge();
-        assert_eq!(judge.look(&JudgeFacts { state: NavState::Landing, ..facts(20.0) }), None);
-        let lost = |s, alt_m| JudgeFacts {
-            state: NavState::Idle,
-            engaged: false,
-            entered_for: Some(TransitionReason::GivenUp(AbortReason::GpsLost)),
-            alt_m,
-            ..facts(s)
-        };
-        for (s, alt_m) in [(21.0, 20.0), (45.0, 8.0), (70.0, 1.0)] {
-            assert_eq!(judge.look(&lost(s, alt_m)), None, "{s}");
-        }
-        let mut stuck = judge.clone();
-        assert_eq!(stuck.look(&lost(99.9, 0.5)), None);
-        let down = JudgeFacts {
-            armed: false,
-            last_disarm: Some(DisarmReason::Landing),
-            touched_down: true,
-            ..lost(80.0, 0.0)
-        };
-        let verdict = judge.look(&down).unwrap();
-        assert_eq!(
-            (verdict.result, verdict.reason.as_str()),
-            (FlightResult::Landed, "landed without a GPS fix")
-        );
-    }
-
-    #[test]
-    fn a_mission_that_the_switch_ended_says_so() {
-        let idle = |s, failsafe| JudgeFacts {
-            state: NavState::Idle,
-            engaged: false,
-            entered_for: Some(TransitionReason::Disengage),
-            failsafe,
-            ..facts(s)
-        };
-        for (failsafe, reason) in [
-            (false, "mission given up: the AUTOPILOT switch was turned off; turned on again it resumes."),
-            (true, "mission given up: a failsafe procedure flies."),
-        ] {
-            let mut judge = judge();
-            assert_eq!(judge.look(&idle(20.0, failsafe)), None);
-            assert_eq!(judge.look(&idle(50.0, failsafe)).unwrap().reason, reason);
-        }
-    }
-
-    #[test]
-    fn a_craft_that_hovers_without_a_fix_is_given_up() {
-        let mut judge = judge();
-        assert_eq!(judge.look(&JudgeFacts { state: NavState::Landing, ..facts(20.0) }), None);
-        let lost = |s| JudgeFacts {
-            state: NavState::Idle,
-            engaged: false,
-            entered_for: Some(TransitionReason::GivenUp(AbortReason::GpsLost)),
-            ..facts(s)
-        };
-        assert_eq!(judge.look(&lost(21.0)), None);
-        assert_eq!(judge.look(&lost(51.0)).map(|v| v.result), Some(FlightResult::Aborted));
-    }
-
-    #[test]
-    fn idle_disarm_crash_timeout() {
-        let idle = |s| JudgeFacts { state: NavState::Idle, engaged: false, ..facts(s) };
-        let mut idling = judge();
-        assert_eq!(idling.look(&idle(20.0)), None);
-        assert_eq!(idling.look(&idle(50.0)).map(|v| v.result), Some(FlightResult::Aborted));
-
-        let mut disarmed = judge();
-        let down = |s| JudgeFacts { armed: false, last_disarm: Some(DisarmReason::Switch), ..facts(s) };
-        assert_eq!(disarmed.look(&down(20.0)), None);
-        assert_eq!(disarmed.look(&down(21.0)).map(|v| v.result), Some(FlightResult::Disarmed));
-
-        let crash = Crash {
-            cause: Some(CrashCause::SidewaysLanding(3.34)),
-            state: NavState::Landing,
-            wp: 3,
-            attitude_deg: Some([-0.2, 12.4]),
-            ..Crash::default()
-        };
-        let mut crashed = judge();
-        let wreck = |s| JudgeFacts { crash: Some(crash), ..facts(s) };
-        assert_eq!(crashed.look(&wreck(20.0)), None);
-        let verdict = crashed.look(&wreck(21.0)).unwrap();
-        assert_eq!(
-            (verdict.result, verdict.reason.as_str()),
-            (
-                FlightResult::Crashed,
-                "the craft crashed LANDING at waypoint 3: it touched the ground moving sideways at 3.3 m/s, roll 0°, pitch 12°"
-            )
-        );
-        assert_eq!(Crash::default().to_string(), "the craft crashed");
-
-        let verdict = judge().look(&facts(100.0)).unwrap();
-        assert_eq!(verdict.result, FlightResult::Timeout);
-        assert!(verdict.reason.contains("APPROACHING at waypoint 1"), "{}", verdict.reason);
-    }
-
-    #[test]
-    fn a_craft_that_is_too_heavy_is_refused_with_the_number() {
-        let mut judge = Judge::new(SimTime::from_secs_f64(100.0));
-        let heavy =
-            |s, share| JudgeFacts { engaged: false, lift_share: share, state: NavState::Idle, ..facts(s) };
-        assert_eq!(judge.look(&heavy(10.0, Some(0.97))), None);
-        assert_eq!(judge.look(&heavy(14.0, None)), None);
-        assert_eq!(judge.look(&heavy(15.0, Some(0.97))), None);
-        let verdict = judge.look(&heavy(20.0, Some(0.97))).unwrap();
-        assert_eq!(verdict.result, FlightResult::Refused);
-        assert!(verdict.reason.contains("0.97 of its weight"), "{}", verdict.reason);
-    }
-}
+mod tests;

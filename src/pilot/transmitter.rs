@@ -16,6 +16,8 @@ pub struct RcTransmitter {
     /// Scripted pilot while it flies.
     pilot: Option<Pilot>,
     inputs: Vec<StickInput>,
+    /// The newest frame, sent or not.
+    newest: RcFrame,
 }
 
 impl RcTransmitter {
@@ -27,6 +29,12 @@ impl RcTransmitter {
     /// Returns the virtual sticks, to move them.
     pub fn sticks_mut(&mut self) -> &mut RcFrame {
         &mut self.sticks
+    }
+
+    /// Returns the newest frame: the sticks with the channels that are forced to values. While the link is cut it is not
+    /// sent.
+    pub fn newest(&self) -> RcFrame {
+        self.newest
     }
 
     /// Returns `true` if the link is cut.
@@ -83,6 +91,7 @@ impl RcTransmitter {
                 frame.channels[channel] = input.value_us;
             }
         }
+        self.newest = frame;
         (!self.cut).then_some(frame)
     }
 }

@@ -167,6 +167,8 @@ pub struct SessionView {
     pub replay: Option<Arc<ReplayView>>,
     /// The number of commands that were carried out before this view.
     pub commands_taken: u64,
+    /// The number of events that were sent before this view. It shows their outcome.
+    pub events_sent: u64,
 }
 
 impl SessionView {
@@ -189,6 +191,7 @@ impl SessionView {
             timeline: None,
             replay: None,
             commands_taken: 0,
+            events_sent: 0,
         }
     }
 

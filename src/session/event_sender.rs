@@ -19,11 +19,13 @@ pub(super) struct EventSender {
     marks: Marks,
     /// `true` if the craft was disarmed since the last query.
     disarmed: bool,
+    /// The number of events sent so far.
+    sent: u64,
 }
 
 impl EventSender {
     pub(super) fn new(receiver: mpsc::UnboundedSender<Event>) -> Self {
-        Self { receiver, recorder: None, marks: Marks::default(), disarmed: false }
+        Self { receiver, recorder: None, marks: Marks::default(), disarmed: false, sent: 0 }
     }
 
     /// Sends all later events to a recorder, too.
@@ -39,6 +41,11 @@ impl EventSender {
     pub(super) fn branch(&mut self, vehicle: &mut Vehicle, number: u32, left: SimTime) {
         self.marks.forget_after(vehicle.time());
         self.report(vehicle, SessionEvent::Branch { number, left });
+    }
+
+    /// Returns the number of events sent so far.
+    pub(super) fn sent(&self) -> u64 {
+        self.sent
     }
 
     /// Sends the events of a flight that was flown before.
@@ -80,6 +87,7 @@ impl EventSender {
         if let Some(recorder) = &self.recorder {
             recorder.send(FlightPart::Event(event.clone()));
         }
+        self.sent += 1;
         let _is_heard = self.receiver.send(event.clone());
     }
 }

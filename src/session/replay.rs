@@ -125,7 +125,7 @@ impl ReplaySession {
             Err(why) => return Some(why),
         }
         std::mem::take(&mut self.notices).into_iter().for_each(|text| self.notice(text));
-        let mut published = Duration::ZERO;
+        let (mut published, mut shown_events) = (Duration::ZERO, 0);
         while !self.quit {
             let further = self.take_commands(clock.elapsed(), &mut context);
             if let Some(further) = further {
@@ -134,8 +134,10 @@ impl ReplaySession {
             let now = clock.elapsed();
             let moved = self.player.as_mut().map_or(Ok(false), |player| player.play(now));
             let moved = moved.unwrap_or_else(|why| self.fail(why, now));
-            if self.changed || moved && now.saturating_sub(published) >= VIEW_INTERVAL {
+            let has_news = self.changed || self.events.sent() > shown_events;
+            if has_news || moved && now.saturating_sub(published) >= VIEW_INTERVAL {
                 published = now;
+                shown_events = self.events.sent();
                 self.changed = false;
                 view.send_replace(self.view());
             }
@@ -350,7 +352,7 @@ impl ReplaySession {
             Some(player) => view::of(player, (name, self.number.unwrap_or_default(), self.flights.count())),
             None => view::while_reading(name, 0.0, self.speed),
         };
-        SessionView { commands_taken: self.commands.taken(), ..view }
+        SessionView { commands_taken: self.commands.taken(), events_sent: self.events.sent(), ..view }
     }
 }
 

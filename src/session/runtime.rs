@@ -262,7 +262,7 @@ impl Session {
         let waker = waker::of_this_thread();
         let mut context = Context::from_waker(&waker);
         let start = Instant::now();
-        let mut published = Duration::ZERO;
+        let (mut published, mut shown_events) = (Duration::ZERO, 0);
         let mut moved = false;
         self.flush_events();
         while !self.quit {
@@ -287,8 +287,10 @@ impl Session {
             }
             self.slow_down_after_flight(after);
             moved |= ticks > 0;
-            if self.changed || moved && after - published >= VIEW_INTERVAL {
+            let has_news = self.changed || self.events.sent() > shown_events;
+            if has_news || moved && after - published >= VIEW_INTERVAL {
                 published = after;
+                shown_events = self.events.sent();
                 (self.changed, moved) = (false, false);
                 let view_now = self.view();
                 self.interface.host = HostStatus::of(&view_now);
@@ -443,6 +445,7 @@ impl Session {
             remote: link.map(|link| link.remote().view()),
             timeline: self.timeline_view(),
             commands_taken: self.commands.taken(),
+            events_sent: self.events.sent(),
             ..SessionView::from_recorded(vehicle)
         }
     }

@@ -20,6 +20,8 @@ pub(super) struct EventObserver {
     /// `true` once a landing has completed the mission.
     landed: bool,
     last_disarm: Option<DisarmReason>,
+    /// `true` while GPS RESCUE flies, and after its landing.
+    rescues: bool,
 }
 
 impl EventObserver {
@@ -53,6 +55,10 @@ impl EventObserver {
         {
             events.push(FirmwareEvent::Mode(modes));
         }
+        if self.armed {
+            // A firmware whose autopilot flies the rescue may not report the mode.
+            self.rescues = self.modes.has(Mode::GpsRescue) || craft.commanded == Some(true);
+        }
         if let Some(link) = craft.rc_link {
             match self.rc_link.replace(link) {
                 Some(true) if !link => events.push(FirmwareEvent::RxLoss),
@@ -71,15 +77,20 @@ impl EventObserver {
         self.last_disarm
     }
 
-    /// Replaces the report of a disarmed flight controller, whose mission is over: complete if it ended by its landing.
-    /// The report may be older than the disarming.
+    /// Completes a report of the navigator. A rescue is a return home, not the stored plan. The mission of a disarmed flight
+    /// controller is over: complete if it ended by its landing. The report may be older than the disarming.
     pub(super) fn completed(&self, nav: NavTelemetry, armed: Option<bool>) -> NavTelemetry {
+        let source = if self.rescues { PlanSource::Rth } else { nav.source };
         match (armed, self.state) {
-            (Some(false), NavState::Complete) => {
-                NavTelemetry { state: NavState::Complete, wp: self.wp, next_wp: self.wp, ..at_rest(&nav) }
-            }
+            (Some(false), NavState::Complete) => NavTelemetry {
+                state: NavState::Complete,
+                wp: self.wp,
+                next_wp: self.wp,
+                source,
+                ..at_rest(&nav)
+            },
             (Some(false), _) => at_rest(&nav),
-            _ => nav,
+            _ => NavTelemetry { source, ..nav },
         }
     }
 
@@ -252,6 +263,25 @@ mod tests {
             "COMPLETE IDLE 0 disengage",
         ];
         assert_eq!(words, expected);
+    }
+
+    #[test]
+    fn a_rescue_is_a_return_home_until_its_landing_is_over() {
+        let mut observer = EventObserver::default();
+        let mut source = |armed: bool, rescue: bool, state| {
+            let mut modes = ModeFlags::default();
+            modes.set(Mode::Autopilot, armed);
+            let (armed, modes, commanded) = (Some(armed), Some(modes), Some(rescue));
+            let craft = CraftView { armed, modes, commanded, ..CraftView::default() };
+            let nav = NavTelemetry { state, ..NavTelemetry::default() };
+            observer.follow(&craft, Some(&nav), None);
+            let nav = observer.completed(nav, armed);
+            (nav.state, nav.source)
+        };
+        assert_eq!(source(true, false, NavState::Landing), (NavState::Landing, PlanSource::Stored));
+        assert_eq!(source(true, true, NavState::Landing), (NavState::Landing, PlanSource::Rth));
+        assert_eq!(source(false, false, NavState::Idle), (NavState::Complete, PlanSource::Rth));
+        assert_eq!(source(true, false, NavState::Approaching), (NavState::Approaching, PlanSource::Stored));
     }
 
     #[test]

@@ -1,5 +1,6 @@
 //! Flies the cases with a remote firmware, each with a new start.
 
+use std::collections::BTreeSet;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 
@@ -75,6 +76,8 @@ impl Run<'_> {
         let threads = if is_repeatable { threads } else { 1 };
         let (mut trouble, mut is_in_trouble) = (None, false);
         let mut repetitions = Repetitions::default();
+        // Most flights have the same messages.
+        let mut told = BTreeSet::new();
         let gives_up = AtomicBool::new(false);
         let ends = || is_stopped() || gives_up.load(Ordering::Relaxed);
         parallel::all(
@@ -87,7 +90,11 @@ impl Run<'_> {
                 if gives_up.load(Ordering::Relaxed) {
                     return;
                 }
-                done.reported.iter().for_each(|sentence| results.tell(sentence));
+                for sentence in done.reported {
+                    if told.insert(sentence.clone()) {
+                        results.tell(&sentence);
+                    }
+                }
                 let was_in_trouble = std::mem::replace(&mut is_in_trouble, done.trouble.is_some());
                 trouble = trouble.max(done.trouble);
                 let flight = if is_repeatable { repetitions.compare(done.flight) } else { done.flight };

@@ -40,6 +40,11 @@ impl Broken {
                 || newly > mended && mcnemar(newly as u64, mended as u64).is_real())
     }
 
+    /// Returns the part of the flights by which more break it than before.
+    fn part(&self) -> f64 {
+        (self.newly.len() as f64 - self.mended.len() as f64) / self.judged as f64
+    }
+
     /// Returns `true` if every firmware keeps it in every flight; `false` for an expectation of a scenario.
     pub(in crate::report) fn is_general(&self) -> bool {
         self.label == ANSWERS || properties::LABELS.contains(&self.label.as_str())
@@ -51,7 +56,7 @@ impl Broken {
     }
 }
 
-/// Returns the properties that a build broke, those first that the change broke in the most flights.
+/// Returns the properties that a build broke, those first that the change broke in the greatest part of their flights.
 pub(super) fn all(flights: &[LabFlight]) -> Vec<Broken> {
     let mut found: BTreeMap<&str, Broken> = BTreeMap::new();
     for (index, flight) in flights.iter().enumerate() {
@@ -87,8 +92,9 @@ pub(super) fn all(flights: &[LabFlight]) -> Vec<Broken> {
     }
     let mut broken: Vec<Broken> = found.into_values().collect();
     broken.retain(|broken| !broken.flights.is_empty() || !broken.mended.is_empty());
-    broken.sort_by_key(|broken| {
-        std::cmp::Reverse((broken.is_worse(), broken.newly.len(), broken.flights.len()))
+    broken.sort_by(|a, b| {
+        let more = b.part().total_cmp(&a.part()).then(b.flights.len().cmp(&a.flights.len()));
+        b.is_worse().cmp(&a.is_worse()).then(more)
     });
     broken
 }

@@ -10,6 +10,9 @@ use crate::scenario::Better;
 /// The share of the value before below which no change is reported.
 const SHARE: f64 = 0.01;
 
+/// The standard deviation of a normal distribution whose median absolute deviation is 1.
+const DEVIATION: f64 = 1.4826;
+
 /// A measure that changed.
 #[derive(Debug, Clone, PartialEq)]
 pub(in crate::report) struct Finding {
@@ -30,6 +33,8 @@ pub(in crate::report) struct Finding {
     pub(in crate::report) p: f64,
     /// The flight with the greatest difference in that direction.
     pub(in crate::report) example: usize,
+    /// The difference in standard deviations of the differences.
+    deviations: f64,
 }
 
 /// The meaning of a change for the pilot.
@@ -76,9 +81,10 @@ pub(super) fn all(measures: &[LabMeasure], flights: &[LabFlight]) -> (Vec<Findin
     (findings, count)
 }
 
-/// Puts worse before changed before better, and a large share of change before a small one.
+/// Puts what is better last, and the others by their weight.
 fn order(a: &Finding, b: &Finding) -> Ordering {
-    a.kind.cmp(&b.kind).then(b.share().total_cmp(&a.share()))
+    let is_better = |finding: &Finding| finding.kind == Kind::Better;
+    is_better(a).cmp(&is_better(b)).then(b.weight().total_cmp(&a.weight()))
 }
 
 fn compare<'a>(measure: &'a LabMeasure, flights: &[LabFlight]) -> Compared<'a> {
@@ -140,6 +146,8 @@ impl Compared<'_> {
             (Some(Better::Less), true) | (Some(Better::More), false) => Kind::Worse,
             _ => Kind::Better,
         };
+        let center = median(sizes.iter().copied())?;
+        let spread = DEVIATION * median(sizes.iter().map(|size| (size - center).abs()))?;
         Some(Finding {
             measure: self.measure.clone(),
             kind,
@@ -150,6 +158,7 @@ impl Compared<'_> {
             pairs: self.pairs.len(),
             p,
             example,
+            deviations: difference.abs() / spread.max(1e-9),
         })
     }
 }
@@ -160,6 +169,15 @@ impl Finding {
     pub(super) fn share(&self) -> f64 {
         let size = self.typical.iter().map(|value| value.abs()).fold(0.0, f64::max);
         self.difference.abs() / size.max(4.0 * smallest(self.measure.unit)).max(1e-9)
+    }
+
+    /// Returns the weight among the findings: how much the measure changed, in which part of the flights, and how clearly. A
+    /// side effect often changes much in a few flights, or differently in each. A change for the worse counts twice.
+    fn weight(&self) -> f64 {
+        let part = self.differing as f64 / self.pairs as f64;
+        let clarity = self.deviations / (1.0 + self.deviations);
+        let kind = if self.kind == Kind::Worse { 2.0 } else { 1.0 };
+        kind * self.share() * part * clarity
     }
 }
 

@@ -99,6 +99,46 @@ fn a_change_that_shows_only_in_some_flights_counts_although_the_others_differ_a_
 }
 
 #[test]
+fn a_clear_change_in_all_flights_comes_before_a_larger_one_in_a_few_and_before_what_is_better() {
+    let flights = (1..=40_u64).map(|seed| {
+        let by = 0.001 * seed as f64;
+        let few = if seed <= 10 { 3.0 + by } else { 1.0 };
+        let measures = |values: [f64; 4]| {
+            let keys = ["overshoot_m 0", "ring_radius_m 1", "alt_error_m 0", "touchdown_distance_m"];
+            keys.map(str::to_owned).into_iter().zip(values).collect()
+        };
+        let one = |values| CheckedFlight { measures: measures(values), ..flight(seed, values[1], &[]) };
+        LabFlight { base: Some(one([1.0, 2.0, 4.0, 4.0])), head: one([few, 4.0 + by, 4.5 + by, 0.5 + by]) }
+    });
+    let lab = answer(flights.collect());
+    let titles: Vec<&str> = lab.findings.iter().map(|finding| finding.measure.title.as_str()).collect();
+    assert_eq!(
+        titles,
+        [
+            "radius of an ORBIT",
+            "overshoot at a waypoint",
+            "altitude error at a waypoint",
+            "touchdown beside the LAND point"
+        ]
+    );
+}
+
+#[test]
+fn a_property_that_is_broken_in_all_its_flights_comes_before_one_that_is_broken_in_more_of_many() {
+    let pair = |seed: u64| LabFlight {
+        base: Some(flight(seed, 1.0, &[("keeps the tilt", true)])),
+        head: flight(seed, 1.001, &[("keeps the tilt", seed > 5)]),
+    };
+    let rth = |seed: u64| LabFlight {
+        base: Some(flight(seed, 1.0, &[("RTH comes home", true)])),
+        head: flight(seed, 1.001, &[("RTH comes home", false)]),
+    };
+    let lab = answer((1..=20).map(pair).chain((21..=23).map(rth)).collect());
+    let labels: Vec<&str> = lab.shown().map(|broken| broken.label.as_str()).collect();
+    assert_eq!(labels, ["RTH comes home", "keeps the tilt"]);
+}
+
+#[test]
 fn a_waypoint_that_only_one_build_reached_is_left_out() {
     let measures =
         |values: &[(&str, f64)]| values.iter().map(|(key, value)| ((*key).to_owned(), *value)).collect();

@@ -423,8 +423,12 @@ fn a_running_session_publishes_its_views_and_events() {
         handle.commands.send(Command::Seek(Seek::Newest)).await.unwrap();
         let is_answer =
             |event: &Event| matches!(&event.kind, SessionEvent::Notice(said) if said.contains("newest"));
-        while !handle.events.recv().await.is_some_and(|event| is_answer(&event)) {}
-        handle.view.changed().await.unwrap();
+        let mut events = 1;
+        while !handle.events.recv().await.is_some_and(|event| is_answer(&event)) {
+            events += 1;
+        }
+        // A view with their outcome follows.
+        handle.view.wait_for(|view| view.events_sent >= events).await.unwrap();
         handle.commands.send(Command::Quit).await.unwrap();
         // The session drops its ends.
         while handle.events.recv().await.is_some() {}

@@ -60,7 +60,7 @@ async fn run_loop(
     let mut state = AppState::new(config, SIZE, view);
     let (answers, mut replies) = Answers::channel();
     let threads = Threads::start(&answers)?;
-    let mut awaited = 0_usize;
+    let (mut awaited, mut events) = (0_usize, 0);
     let mut has_ended = false;
     let ending = loop {
         let effects = tokio::select! {
@@ -79,6 +79,7 @@ async fn run_loop(
             event = link.events.recv() => match event {
                 None => break Ending::SessionEnded,
                 Some(event) => {
+                    events += 1;
                     let text = (state.sentence)(&event);
                     if !text.is_empty() {
                         let text = state.shared.keymap.in_force(&text);
@@ -97,7 +98,12 @@ async fn run_loop(
                 }
                 Err(_) => break Ending::SessionEnded,
             },
-            line = input.recv(), if awaited == 0 && !has_ended && !is_reading(&state) => {
+            // A line must not act on the state before an event that its writer has read.
+            line = input.recv(), if awaited == 0
+                && !has_ended
+                && state.shared.view.events_sent >= events
+                && !is_reading(&state) =>
+            {
                 update(&mut state, Msg::Clock(started.elapsed()));
                 match line {
                     None => {
