@@ -9,6 +9,7 @@
 //! ```
 
 mod frames;
+mod handover;
 mod inputs;
 mod library;
 mod page;

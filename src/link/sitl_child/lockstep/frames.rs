@@ -19,13 +19,19 @@ pub const GRANT_BYTES: usize = 24 + RC_BYTES + FDM_BYTES;
 pub const REPORT_BYTES: usize = 48 + 2 * SERIAL_PORTS;
 
 /// The memory that the program and the executable share. Each side writes its message, then its number, and wakes the other
-/// side, which waits for a change of the number.
+/// side if it sleeps, which waits for a change of the number.
 #[repr(C)]
 pub struct Page {
     /// The number of the newest grant. The boot is [`BOOT_GRANT`].
     pub granted: AtomicU32,
     /// The number of the grant whose step is over; 0 = the boot is not.
     pub reported: AtomicU32,
+    /// 1 = the executable sleeps until the next grant, and must be woken.
+    pub executable_sleeps: AtomicU32,
+    /// 1 = the program sleeps until the next report, and must be woken.
+    pub program_sleeps: AtomicU32,
+    /// The times that the executable yields the processor before it sleeps.
+    pub yields: AtomicU32,
     /// The number of threads whose code the main thread of the executable runs.
     pub guests: AtomicU32,
     grant: [AtomicU32; GRANT_BYTES / 4],
@@ -77,7 +83,7 @@ const HAS_RC: u8 = 1;
 const HAS_SERIAL: u8 = 2;
 
 impl Page {
-    /// Publishes a grant. Wake the executable next.
+    /// Publishes a grant. Wake the executable next, if it sleeps.
     pub fn put_grant(&self, grant: &Grant) {
         write(&self.grant, &grant.to_bytes());
         self.granted.fetch_add(1, SeqCst);
@@ -88,7 +94,7 @@ impl Page {
         Grant::from_bytes(&read(&self.grant))
     }
 
-    /// Publishes the report for the newest grant. Wake the program next.
+    /// Publishes the report for the newest grant. Wake the program next, if it sleeps.
     pub fn put_report(&self, report: &Report) {
         write(&self.report, &report.to_bytes());
         self.reported.store(self.granted.load(SeqCst), SeqCst);

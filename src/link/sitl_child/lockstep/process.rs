@@ -1,4 +1,5 @@
 //! The process of an executable in lockstep, and its side of the shared memory.
+#![allow(clippy::disallowed_methods, reason = "the length of a step shows whether the processor is busy")]
 
 use std::os::fd::AsFd;
 use std::process::Child;
@@ -6,6 +7,7 @@ use std::sync::atomic::Ordering::SeqCst;
 use std::time::{Duration, Instant};
 
 use super::frames::{BOOT_GRANT, Grant, Report};
+use super::handover::{Handover, YIELDS};
 use super::page::SharedPage;
 use crate::link::sitl_child::events::Events;
 use crate::link::sitl_child::launch::{self, LaunchError, Preload};
@@ -27,6 +29,9 @@ pub(super) struct Process {
     child: Child,
     output: SteppedOutput,
     page: SharedPage,
+    handover: Handover,
+    /// `true` if the wait for the report begins with yields.
+    yields: bool,
     /// The processor time that it had used when this step first took long.
     used: Option<Duration>,
     /// The looks in a row at which it slept.
@@ -57,7 +62,7 @@ impl Process {
         page.granted.store(BOOT_GRANT, SeqCst);
         let mut child = launch::spawn(config, Some((preload, &page.path())))?;
         let output = SteppedOutput::of(&mut child).map_err(failed)?;
-        Ok(Self { child, output, page, used: None, asleep: 0 })
+        Ok(Self { child, output, page, handover: Handover::default(), yields: false, used: None, asleep: 0 })
     }
 
     /// Returns the number of the process.
@@ -72,10 +77,29 @@ impl Process {
 
     /// Gives the executable a grant. A process that has ended takes none; the wait for its report says so.
     pub(super) fn grant(&mut self, grant: &Grant) {
+        self.yields = self.handover.begin_step();
+        self.page.yields.store(if self.yields { YIELDS } else { 0 }, SeqCst);
         self.page.put_grant(grant);
         #[cfg(target_os = "linux")]
-        let _woken =
-            rustix::thread::futex::wake(&self.page.granted, rustix::thread::futex::Flags::empty(), 1);
+        if self.page.executable_sleeps.load(SeqCst) != 0 {
+            use rustix::thread::futex::{Flags, wake};
+            let _woken = wake(&self.page.granted, Flags::empty(), 1);
+        }
+    }
+
+    /// Yields the processor to the executable, so that it may report without a sleep of this program.
+    fn yield_to_executable(&mut self, wanted: u32) {
+        if !std::mem::take(&mut self.yields) {
+            return;
+        }
+        let start = Instant::now();
+        let is_over = || self.page.reported.load(SeqCst) == wanted;
+        let came = is_over()
+            || (0..YIELDS).any(|_| {
+                std::thread::yield_now();
+                is_over()
+            });
+        self.handover.end_step(came, start.elapsed());
     }
 
     /// Waits until the executable waits for the next grant, for a short time at most.
@@ -84,6 +108,7 @@ impl Process {
     /// Returns the reason why there is no report.
     pub(super) fn wait(&mut self) -> Result<Report, NoReport> {
         let wanted = self.page.granted.load(SeqCst);
+        self.yield_to_executable(wanted);
         // A process that wakes this one without a report must not hold it, and an interrupted wait may be repeated.
         for _ in 0..PARTS {
             let seen = self.page.reported.load(SeqCst);
@@ -104,7 +129,10 @@ impl Process {
         {
             use rustix::thread::futex::{Flags, Timespec, wait};
             let longest = Timespec { tv_sec: 0, tv_nsec: LOOK.as_nanos() as i64 };
+            // A report that comes in between ends the wait, because it has changed the number.
+            self.page.program_sleeps.store(1, SeqCst);
             let _changed = wait(&self.page.reported, Flags::empty(), seen, Some(&longest));
+            self.page.program_sleeps.store(0, SeqCst);
         }
         #[cfg(not(target_os = "linux"))]
         let _ = seen;

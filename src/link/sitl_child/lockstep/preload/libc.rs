@@ -80,6 +80,7 @@ unsafe extern "C" {
         set: *const [u64; SIGNAL_WORDS],
         before: *mut [u64; SIGNAL_WORDS],
     ) -> c_int;
+    pub(crate) fn sched_yield() -> c_int;
     pub(crate) fn getpid() -> c_int;
     pub(crate) fn getppid() -> c_int;
     pub(crate) fn getsockname(fd: c_int, address: *mut Address, size: *mut u32) -> c_int;

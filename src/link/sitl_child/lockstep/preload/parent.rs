@@ -8,7 +8,9 @@ use super::RUN;
 use super::clock::NOW_NS;
 use super::frames::{MOTOR_BYTES, Page, Report};
 use super::intake::{FDM, RC};
-use super::libc::{_exit, MAP_SHARED, READABLE_WRITABLE, Scope, getppid, mmap, wait_for_grant, wake};
+use super::libc::{
+    _exit, MAP_SHARED, READABLE_WRITABLE, Scope, getppid, mmap, sched_yield, wait_for_grant, wake,
+};
 use super::serial::{SERIAL, serve_serial};
 
 /// The memory that the parent shares; null = the library does nothing.
@@ -57,9 +59,21 @@ pub(crate) fn end_step() {
     let Some(page) = page() else { return };
     let granted = page.granted.load(SeqCst);
     page.put_report(&report());
-    wake(&page.reported, Scope::Shared);
+    if page.program_sleeps.load(SeqCst) != 0 {
+        wake(&page.reported, Scope::Shared);
+    }
+    for _ in 0..page.yields.load(SeqCst) {
+        if page.granted.load(SeqCst) != granted {
+            break;
+        }
+        // SAFETY: has no conditions.
+        unsafe { sched_yield() };
+    }
     while page.granted.load(SeqCst) == granted {
+        // A grant that comes in between ends the wait, because it has changed the number.
+        page.executable_sleeps.store(1, SeqCst);
         wait_for_grant(&page.granted, granted);
+        page.executable_sleeps.store(0, SeqCst);
         // SAFETY: has no conditions, and ends the process.
         unsafe {
             if page.granted.load(SeqCst) == granted && getppid() != PARENT.load(SeqCst) {
