@@ -11,7 +11,7 @@ pub(crate) mod fixture;
 mod flights;
 mod forecast;
 mod four_sizes;
-mod hands;
+pub(crate) mod hands;
 mod in_flight;
 mod keys;
 mod live_settings;

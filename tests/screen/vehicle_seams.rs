@@ -9,12 +9,10 @@ use betadeck::session::SessionView;
 use betadeck::signals::{RcFrame, RcSource};
 use betadeck::sim::{WorldCommand, WorldConfig};
 use betadeck::telemetry::Snapshot;
-use betadeck::ui::{AppState, Msg, draw, update};
+use betadeck::ui::{AppState, Msg, update};
 use betadeck::vehicle::{
     Answer, FrameOut, LateAnswer, RemoteTelemetry, Vehicle, VehicleCommand, VehicleConfig,
 };
-use ratatui::Terminal;
-use ratatui::backend::TestBackend;
 
 mod clients;
 mod stand_in;
@@ -213,9 +211,7 @@ fn screen(snapshot: Snapshot) -> String {
     let mut state: AppState = fixture::state((120, 40), fixture::colour());
     let vehicle = std::sync::Arc::new(snapshot);
     update(&mut state, Msg::View(SessionView { vehicle, ..SessionView::default() }));
-    let mut terminal = Terminal::new(TestBackend::new(120, 40)).unwrap();
-    terminal.draw(|frame| draw(&state, frame)).unwrap();
-    terminal.backend().to_string()
+    crate::ui::hands::screen(&state)
 }
 
 #[test]

@@ -139,6 +139,22 @@ fn a_property_that_is_broken_in_all_its_flights_comes_before_one_that_is_broken_
 }
 
 #[test]
+fn the_answer_names_a_broken_property_before_a_measure_that_only_changed_and_keeps_room_for_both() {
+    let flights = (1..=20_u64).map(|seed| {
+        let by = 0.001 * seed as f64;
+        let one = |radius: f64, kept: bool| {
+            let measures = vec![("ring_radius_m 1".to_owned(), radius)];
+            CheckedFlight { measures, ..flight(seed, radius, &[("stays inside the fence", kept)]) }
+        };
+        LabFlight { base: Some(one(2.0, true)), head: one(4.0 + by, false) }
+    });
+    let text = answer(flights.collect()).text();
+    let lines: Vec<&str> = text.lines().filter(|line| !line.contains("betadeck open")).collect();
+    assert!(lines[2].starts_with("  worse: stays inside the fence"), "{text}");
+    assert!(lines[3].starts_with("  changed: radius of an ORBIT"), "{text}");
+}
+
+#[test]
 fn a_waypoint_that_only_one_build_reached_is_left_out() {
     let measures =
         |values: &[(&str, f64)]| values.iter().map(|(key, value)| ((*key).to_owned(), *value)).collect();

@@ -1,31 +1,56 @@
 //! The answer in about ten lines.
 
 use super::broken::seen;
-use super::{Broken, Finding, Lab};
+use super::{Broken, Finding, Kind, Lab};
 
-/// The most lines of findings, and of broken properties.
+/// The most lines of findings and broken properties.
 const LINES: usize = 8;
+const GROUPS: usize = 5;
 
 /// Returns the answer.
 pub(super) fn answer(lab: &Lab) -> String {
     let mut lines = vec![format!("{}: {}", lab.title(), lab.flown()), lab.verdict()];
-    let broken: Vec<&Broken> = lab.shown().collect();
-    // Broken properties get at least half of the lines if there are so many.
-    let of_findings = lab.findings.len().min(LINES - broken.len().min(LINES / 2));
-    for finding in lab.findings.iter().take(of_findings) {
-        lines.push(format!("  {}", line(finding)));
-        lines.extend(lab.open(finding).map(|open| format!("      {open}")));
+    let groups = groups(lab);
+    // What is worse comes first, and both kinds of it are shown.
+    let mut shown = [0; GROUPS];
+    for (most, group) in [(LINES / 2, 0..2), (LINES, 0..GROUPS)] {
+        for at in group {
+            let left = LINES - shown.iter().sum::<usize>();
+            shown[at] += (groups[at].len() - shown[at]).min(most.saturating_sub(shown[at])).min(left);
+        }
     }
-    for broken in broken.iter().take(LINES - of_findings) {
-        lines.push(format!("  {}", broken_line(lab, broken)));
-        lines.extend(lab.open_broken(broken).map(|open| format!("      {open}")));
+    for (group, count) in groups.iter().zip(shown) {
+        for (line, open) in group.iter().take(count) {
+            lines.push(format!("  {line}"));
+            lines.extend(open.iter().map(|open| format!("      {open}")));
+        }
     }
-    let left = lab.findings.len() + broken.len() - of_findings - broken.len().min(LINES - of_findings);
+    let left = groups.iter().map(Vec::len).sum::<usize>() - shown.iter().sum::<usize>();
     if left > 0 {
         lines.push(format!("  and {left} more: --markdown and --html show all"));
     }
     lines.push(String::new());
     lines.join("\n")
+}
+
+/// Returns the lines with their commands, in groups: worse measures, worse properties, changed measures, other properties,
+/// better measures.
+fn groups(lab: &Lab) -> [Vec<(String, Option<String>)>; GROUPS] {
+    let measures = |kind: Kind| {
+        let of_kind = lab.findings.iter().filter(move |finding| finding.kind == kind);
+        of_kind.map(|finding| (line(finding), lab.open(finding))).collect()
+    };
+    let properties = |is_worse: bool| {
+        let wanted = lab.shown().filter(move |broken| broken.is_worse() == is_worse);
+        wanted.map(|broken| (broken_line(lab, broken), lab.open_broken(broken))).collect()
+    };
+    [
+        measures(Kind::Worse),
+        properties(true),
+        measures(Kind::Changed),
+        properties(false),
+        measures(Kind::Better),
+    ]
 }
 
 /// Returns a finding: `worse: speed at the touchdown 0.52 → 0.93 m/s (+0.41, 20 of 20 flights)`.

@@ -6,15 +6,13 @@ use betadeck::ui::command;
 use betadeck::ui::enabled;
 use betadeck::ui::files::FileRequest;
 use betadeck::ui::keymap::KeyPress;
-use betadeck::ui::{AppState, Effect, EnteredLines, FlightForm, LineField, Msg, Panel, Popup, draw, update};
+use betadeck::ui::{AppState, Effect, EnteredLines, FlightForm, LineField, Msg, Panel, Popup, update};
 use betadeck::vehicle::VehicleCommand;
 use crossterm::event::{KeyCode, KeyEvent, KeyModifiers, MouseEventKind};
-use ratatui::Terminal;
-use ratatui::backend::TestBackend;
 
 use crate::ui::fixture;
 use crate::ui::fixture::SimpleFlight;
-use crate::ui::hands::{mouse, mouse_button, place_of};
+use crate::ui::hands::{mouse, mouse_button, place_of, screen};
 
 fn key(state: &mut AppState, code: KeyCode) -> Vec<Effect> {
     let mut effects = update(state, Msg::Key(KeyEvent::new(code, KeyModifiers::NONE)));
@@ -49,13 +47,6 @@ fn ready_at(size: (u16, u16)) -> AppState {
     let view = fixture::view(&SimpleFlight { time_s: 8.0, fix: true, ..SimpleFlight::default() });
     update(&mut state, Msg::View(view));
     state
-}
-
-fn screen(state: &AppState) -> String {
-    let (width, height) = state.shared.size;
-    let mut terminal = Terminal::new(TestBackend::new(width, height)).expect("a test terminal");
-    terminal.draw(|frame| draw(state, frame)).expect("drawing in memory");
-    terminal.backend().to_string()
 }
 
 fn notice(state: &AppState) -> String {

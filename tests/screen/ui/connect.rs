@@ -2,7 +2,7 @@
 //! change.
 
 use crate::ui::fixture;
-use crate::ui::hands::mouse;
+use crate::ui::hands::{key, mouse, press};
 use betadeck::fc::{Access, NOTHING_MOVES, NOTHING_SIMULATED, RemoteState, RemoteView};
 use betadeck::session::Command;
 use betadeck::session::command::CliOutput;
@@ -50,18 +50,14 @@ fn show(state: &mut AppState, change: impl FnOnce(&mut RemoteView)) {
     update(state, Msg::View(view));
 }
 
-fn press(state: &mut AppState, code: KeyCode) -> Vec<Effect> {
-    update(state, Msg::Key(KeyEvent::new(code, KeyModifiers::NONE)))
-}
-
 /// Enters a line in the CLI panel and returns the effects, except for requests to files.
 fn enter(state: &mut AppState, line: &str) -> Vec<Effect> {
     state.shared.focus = Panel::Cli;
     state.shared.slots.visit(Panel::Cli);
     for c in line.chars() {
-        press(state, KeyCode::Char(c));
+        press(state, c);
     }
-    let mut effects = press(state, KeyCode::Enter);
+    let mut effects = key(state, KeyCode::Enter);
     effects.retain(|effect| !matches!(effect, Effect::Files(_)));
     effects
 }
@@ -90,7 +86,7 @@ fn reading_is_free_and_a_change_is_asked_about_once() {
 
     assert!(enter(&mut state, "set ap_max_angle = 30").is_empty());
     insta::assert_snapshot!(text(&state));
-    let effects = press(&mut state, KeyCode::Char('y'));
+    let effects = press(&mut state, 'y');
     assert!(
         matches!(
             &effects[..],
@@ -113,7 +109,7 @@ fn reading_is_free_and_a_change_is_asked_about_once() {
 fn an_upload_and_a_save_in_flash_ask_and_a_download_does_not() {
     for (key, asks) in [('U', true), ('W', true), ('D', false)] {
         let mut state = connected(|_| {});
-        let effects = press(&mut state, KeyCode::Char(key));
+        let effects = press(&mut state, key);
         assert_eq!((effects.is_empty(), is_asked(&state)), (asks, asks), "{key}: {effects:?}");
     }
 }
@@ -125,7 +121,7 @@ fn a_refusal_drops_what_was_kept_back_and_the_lines_after_it() {
         state.shared.focus = Panel::Cli;
         state.shared.slots.visit(Panel::Cli);
         assert!(update(&mut state, Msg::Paste("set a = 1\nset b = 2\nsave\n".to_owned())).is_empty());
-        assert!(press(&mut state, leave).is_empty());
+        assert!(key(&mut state, leave).is_empty());
         assert!(
             !is_asked(&state) && !state.panels.cli.console.waiting && state.panels.cli.console.queued() == 0
         );
@@ -145,11 +141,11 @@ fn a_question_that_is_closed_otherwise_changes_nothing() {
     };
     for close in [ctrl_c as fn(&mut AppState) -> Vec<Effect>, renew] {
         let mut state = connected(|_| {});
-        press(&mut state, KeyCode::Char('U'));
+        press(&mut state, 'U');
         assert!(is_asked(&state));
         assert!(close(&mut state).is_empty());
         assert!(!is_asked(&state) && state.permission.held.is_empty());
-        assert!(press(&mut state, KeyCode::Char('y')).is_empty());
+        assert!(press(&mut state, 'y').is_empty());
     }
 }
 
@@ -158,7 +154,7 @@ fn changes_are_permitted_ahead_by_a_command() {
     let mut state = connected(|_| {});
     assert_eq!(betadeck::ui::run_line(&mut state, "allow-changes").map(|effects| effects.len()), Ok(0));
     assert!(is_asked(&state));
-    let effects = press(&mut state, KeyCode::Char('y'));
+    let effects = press(&mut state, 'y');
     assert!(matches!(effects[..], [Effect::Send(Command::PermitChanges(1))]), "{effects:?}");
 }
 
@@ -170,10 +166,10 @@ fn a_command_line_without_framing_is_opened_with_permission_and_a_warning() {
     for part in ["opens the command line", "does not arm then", "restarts it"] {
         assert!(shown.contains(part), "{part}: {shown}");
     }
-    press(&mut state, KeyCode::Char('n'));
+    press(&mut state, 'n');
     state.shared.focus = Panel::Map;
-    assert!(press(&mut state, KeyCode::Char('D')).is_empty() && is_asked(&state));
-    press(&mut state, KeyCode::Char('n'));
+    assert!(press(&mut state, 'D').is_empty() && is_asked(&state));
+    press(&mut state, 'n');
     show(&mut state, |remote| (remote.opens_cli, remote.in_cli) = (false, true));
     assert!(text(&state).contains("open: telemetry stops."), "{}", text(&state));
 }
@@ -281,7 +277,7 @@ fn a_plan_that_the_remote_firmware_has_not_reported_is_not_flown_unseen() {
     let mut view = state.shared.view.clone();
     std::sync::Arc::make_mut(&mut view.vehicle).stored_plan = None;
     update(&mut state, Msg::View(view));
-    let effects = press(&mut state, KeyCode::Char('F'));
+    let effects = press(&mut state, 'F');
     assert!(effects.iter().any(|effect| matches!(effect, Effect::Upload { .. })), "{effects:?}");
 }
 
@@ -326,9 +322,9 @@ fn a_child_is_brought_home_only_with_a_switch_for_it() {
 fn f_over_a_real_craft_asks_for_no_plan_and_sends_nothing() {
     let mut state = connected(|_| {});
     for key in ['2', '+'] {
-        press(&mut state, KeyCode::Char(key));
+        press(&mut state, key);
     }
-    assert!(press(&mut state, KeyCode::Char('F')).is_empty());
+    assert!(press(&mut state, 'F').is_empty());
     assert!(!text(&state).contains("Fly which plan?") && !is_asked(&state), "{}", text(&state));
     assert!(text(&state).contains("This craft is real"), "{}", text(&state));
 }
@@ -336,10 +332,10 @@ fn f_over_a_real_craft_asks_for_no_plan_and_sends_nothing() {
 #[test]
 fn keys_after_the_settings_panel_wait_until_the_craft_has_told_its_settings() {
     let mut state = connected(|_| {});
-    let asked = press(&mut state, KeyCode::Char('9'));
+    let asked = press(&mut state, '9');
     assert!(matches!(asked[..], [Effect::ReadSettings]), "{asked:?}");
     for key in ['/', 'f', 'e', 'n'] {
-        assert!(press(&mut state, KeyCode::Char(key)).is_empty(), "{key} waits");
+        assert!(press(&mut state, key).is_empty(), "{key} waits");
     }
     let read = betadeck::fc::CraftSettings::from_configuration(
         &betadeck::firmware::config::Configuration::default(),
@@ -351,9 +347,9 @@ fn keys_after_the_settings_panel_wait_until_the_craft_has_told_its_settings() {
     // Esc is not kept waiting, and takes back what waits.
     let mut state = connected(|_| {});
     for key in ['9', '/', 'f'] {
-        press(&mut state, KeyCode::Char(key));
+        press(&mut state, key);
     }
-    press(&mut state, KeyCode::Esc);
+    key(&mut state, KeyCode::Esc);
     update(&mut state, Msg::SettingsReply(Ok(Box::new(read))));
     assert!(!text(&state).contains("/f"), "{}", text(&state));
 }
@@ -368,7 +364,7 @@ fn keys_that_wait_for_the_settings_are_dropped_if_a_click_has_shown_another_pane
         let mut state = connected(|_| {});
         update(&mut state, Msg::Resize(120, 40));
         for key in ['9', '/', 'f'] {
-            press(&mut state, KeyCode::Char(key));
+            press(&mut state, key);
         }
         if let Some(cell) = cell {
             mouse(&mut state, MouseEventKind::Down, cell);

@@ -4,9 +4,9 @@ use std::sync::Arc;
 
 use betadeck::ui::files::{FileReply, FileRequest};
 use betadeck::ui::{AppState, Effect, Msg, Popup, theme, update};
-use crossterm::event::{KeyCode, KeyModifiers, MouseButton, MouseEventKind};
+use crossterm::event::{KeyCode, MouseButton, MouseEventKind};
 
-use crate::ui::hands::{keys, mouse, mouse_button, place_of, press, screen, state_with_fix};
+use crate::ui::hands::{key, keys, mouse, mouse_button, place_of, screen, state_with_fix};
 use crate::ui::{fixture, settings};
 
 /// Returns a craft with the square, and an open plan that moves one waypoint, raises another and adds one.
@@ -185,7 +185,7 @@ fn a_craft_whose_plan_is_unknown_is_said_to_be_so() {
         "{}",
         screen(&state)
     );
-    press(&mut state, KeyCode::Esc, KeyModifiers::NONE);
+    key(&mut state, KeyCode::Esc);
     assert!(state.popups.is_empty());
 }
 

@@ -3,7 +3,7 @@
 use betadeck::plan::{Altitude, FlightPlan, Seconds, WaypointType};
 use betadeck::ui::files::{Entry, FileReply, FileRequest, Listing};
 use betadeck::ui::{Effect, Msg, update};
-use crossterm::event::{KeyCode, KeyModifiers, MouseEventKind};
+use crossterm::event::MouseEventKind;
 
 use crate::ui::fixture;
 use crate::ui::hands::{
@@ -368,7 +368,7 @@ fn plans_are_opened_and_saved_by_name() {
     let mut line = |text: &str| {
         keys(&mut state, ":");
         for c in text.chars() {
-            press(&mut state, KeyCode::Char(c), KeyModifiers::NONE);
+            press(&mut state, c);
         }
         requests(keys(&mut state, "enter"))
     };

@@ -5,9 +5,9 @@ use std::time::Duration;
 
 use betadeck::ui::flights::LibraryFlight;
 use betadeck::ui::{AppState, Effect, Msg, Popup, update};
-use crossterm::event::{KeyCode, KeyModifiers, MouseButton, MouseEventKind};
+use crossterm::event::{KeyCode, MouseButton, MouseEventKind};
 
-use crate::ui::hands::{keys, mouse, mouse_button, press, screen, state_with_fix};
+use crate::ui::hands::{key, keys, mouse, mouse_button, press, screen, state_with_fix};
 
 const SIZES: [(u16, u16); 4] = [(60, 20), (80, 24), (120, 40), (200, 60)];
 
@@ -80,7 +80,7 @@ fn typing_finds_flights_and_enter_shows_one() {
     keys(&mut state, "'squa 'complete");
     // A blank between two words.
     keys(&mut state, "esc ctrl-f 'squ");
-    press(&mut state, KeyCode::Char(' '), KeyModifiers::NONE);
+    press(&mut state, ' ');
     let effects = keys(&mut state, "'comp enter");
     assert_eq!(files(&effects), [library()[1].file.clone()]);
     assert!(matches!(state.popups[..], [Popup::Flights(_)]), "the list is the way back");
@@ -123,7 +123,7 @@ fn a_damaged_file_is_listed_with_its_reason_and_can_only_be_deleted() {
         assert!(keys(&mut state, refused).is_empty());
         assert!(notice(&state).contains("damaged.flight cannot be shown: it is no recording."));
     }
-    press(&mut state, KeyCode::Delete, KeyModifiers::NONE);
+    key(&mut state, KeyCode::Delete);
     let effects = keys(&mut state, "'y");
     assert!(
         matches!(&effects[..], [Effect::DeleteFlight(file)] if *file == library()[5].file),
@@ -134,15 +134,15 @@ fn a_damaged_file_is_listed_with_its_reason_and_can_only_be_deleted() {
 #[test]
 fn a_flight_is_deleted_only_after_a_question() {
     let mut state = opened((80, 24));
-    press(&mut state, KeyCode::Delete, KeyModifiers::NONE);
+    key(&mut state, KeyCode::Delete);
     assert!(notice(&state).contains("can be deleted once it is over"), "{}", notice(&state));
     keys(&mut state, "down");
-    press(&mut state, KeyCode::Delete, KeyModifiers::NONE);
+    key(&mut state, KeyCode::Delete);
     let shown = screen(&state);
     assert!(shown.contains("Delete the recording 2026-05-09 07:40:33 square?"), "{shown}");
     assert!(keys(&mut state, "'x enter").is_empty() && screen(&state).contains("Delete the recording"));
     assert!(keys(&mut state, "'n").is_empty() && !screen(&state).contains("Delete the recording"));
-    press(&mut state, KeyCode::Delete, KeyModifiers::NONE);
+    key(&mut state, KeyCode::Delete);
     let effects = keys(&mut state, "'y");
     let [Effect::DeleteFlight(file)] = &effects[..] else { panic!("{effects:?}") };
     update(&mut state, Msg::FlightDeleted { file: file.clone(), result: Ok(()) });
@@ -210,7 +210,7 @@ fn a_library_of_a_thousand_flights_is_scrolled_to_its_end() {
         (0..1000).map(|number| flight(number % 60, &format!("plan-{number}"), "complete", "")).collect();
     update(&mut state, Msg::Flights(Ok(many)));
     for _ in 0..120 {
-        press(&mut state, KeyCode::PageDown, KeyModifiers::NONE);
+        key(&mut state, KeyCode::PageDown);
     }
     let shown = screen(&state);
     assert!(shown.contains("Recorded flights — 1000") && shown.contains("plan-999 "), "{shown}");

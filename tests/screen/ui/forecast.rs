@@ -10,33 +10,13 @@ use betadeck::flight::forecast::{
 use betadeck::lookahead::{ForecastJob, ForecastReply, ForecastRequest};
 use betadeck::session::Command;
 use betadeck::telemetry::{InFlightCommand, Snapshot};
-use betadeck::ui::{AppState, Effect, Msg, draw, update};
+use betadeck::ui::{AppState, Effect, Msg, update};
 use betadeck::vehicle::VehicleCommand;
-use crossterm::event::{KeyCode, KeyEvent, KeyModifiers};
-use ratatui::Terminal;
-use ratatui::backend::TestBackend;
+use crossterm::event::KeyCode;
 
 use crate::ui::fixture;
 use crate::ui::fixture::SimpleFlight;
-
-fn screen(state: &AppState) -> TestBackend {
-    let (width, height) = state.shared.size;
-    let mut terminal = Terminal::new(TestBackend::new(width, height)).expect("a test terminal");
-    terminal.draw(|frame| draw(state, frame)).expect("drawing in memory");
-    terminal.backend().clone()
-}
-
-fn text(state: &AppState) -> String {
-    screen(state).to_string()
-}
-
-fn key(state: &mut AppState, code: KeyCode) -> Vec<Effect> {
-    update(state, Msg::Key(KeyEvent::new(code, KeyModifiers::NONE)))
-}
-
-fn press(state: &mut AppState, c: char) -> Vec<Effect> {
-    key(state, KeyCode::Char(c))
-}
+use crate::ui::hands::{key, press, screen};
 
 /// Returns the only forecast request among the effects, if there is one.
 fn job(effects: &[Effect]) -> Option<&ForecastJob> {
@@ -126,9 +106,9 @@ fn the_open_plan_is_estimated_at_once_and_again_when_it_or_the_air_changes() {
 fn the_numbers_of_the_newest_estimate_stand_under_the_plan() {
     let (mut state, first) = ready((80, 24));
     press(&mut state, '2');
-    assert!(text(&state).contains("flown estimate …"));
+    assert!(screen(&state).contains("flown estimate …"));
     answer(&mut state, first.revision + 7, square(ForecastKind::PlanEstimate));
-    assert!(text(&state).contains("flown estimate …"), "an answer to something else");
+    assert!(screen(&state).contains("flown estimate …"), "an answer to something else");
     answer(&mut state, first.revision, square(ForecastKind::PlanEstimate));
     insta::assert_snapshot!(screen(&state));
 }
@@ -142,13 +122,13 @@ fn an_estimate_that_does_not_complete_says_why_first() {
         ..square(ForecastKind::PlanEstimate)
     };
     answer(&mut state, first.revision, missed);
-    assert!(text(&state).contains("✗ flown: "), "{}", text(&state));
+    assert!(screen(&state).contains("✗ flown: "), "{}", screen(&state));
     press(&mut state, '2');
     let effects = press(&mut state, 'd');
     let revision = job(&effects).expect("another plan").revision;
     let forecast = Err("The craft refuses `set ap_max_velocity = fast`".to_owned());
     update(&mut state, Msg::Forecast(ForecastReply { revision, kind: ForecastKind::PlanEstimate, forecast }));
-    assert!(text(&state).contains("No flown estimate: The craft refuses"), "{}", text(&state));
+    assert!(screen(&state).contains("No flown estimate: The craft refuses"), "{}", screen(&state));
 }
 
 #[test]
@@ -164,7 +144,7 @@ fn the_look_ahead_is_asked_for_every_second_until_it_is_turned_off() {
     let effects = press(&mut state, 'L');
     let first = job(&effects).expect("a look-ahead").clone();
     assert_eq!(first.request, ForecastRequest::LookAhead);
-    assert!(text(&state).contains("look-ahead: …"));
+    assert!(screen(&state).contains("look-ahead: …"));
     answer(&mut state, first.revision, Forecast { time_s: 112.0, ..square(ForecastKind::LookAhead) });
     insta::assert_snapshot!("look_ahead_80x24", screen(&state));
     assert!(picture(&mut state, |_| {}).is_empty(), "not yet");
@@ -172,9 +152,9 @@ fn the_look_ahead_is_asked_for_every_second_until_it_is_turned_off() {
     update(&mut state, Msg::Clock(later));
     let effects = picture(&mut state, |_| {});
     assert!(job(&effects).is_some_and(|job| job.request == ForecastRequest::LookAhead));
-    assert!(text(&state).contains("COMPLETE in 1:52, 62 % left"), "the older one until the newer comes");
+    assert!(screen(&state).contains("COMPLETE in 1:52, 62 % left"), "the older one until the newer comes");
     assert!(press(&mut state, 'L').is_empty());
-    assert!(!text(&state).contains("look-ahead"));
+    assert!(!screen(&state).contains("look-ahead"));
 }
 
 #[test]
@@ -198,12 +178,12 @@ fn on_the_ground_there_is_nothing_to_look_ahead_to_and_a_what_if_flies_from_home
     assert!(refused(&state) && state.popups.is_empty());
     press(&mut state, 'w');
     assert!(!refused(&state));
-    assert!(text(&state).contains("What if, flown from home:"), "{}", text(&state));
+    assert!(screen(&state).contains("What if, flown from home:"), "{}", screen(&state));
     let effects = key(&mut state, KeyCode::Enter);
     let asked = job(&effects).expect("a what-if");
     assert!(matches!(&asked.request, ForecastRequest::WhatIf { what_if, .. } if *what_if == WHAT_IFS[0]));
     assert!(state.popups.is_empty());
-    assert!(text(&state).contains("GPS lost here, flown from home: …"), "{}", text(&state));
+    assert!(screen(&state).contains("GPS lost here, flown from home: …"), "{}", screen(&state));
 }
 
 #[test]
@@ -216,7 +196,7 @@ fn a_what_if_is_chosen_flown_shown_and_dismissed() {
     let effects = key(&mut state, KeyCode::Enter);
     let chosen = job(&effects).expect("a what-if").clone();
     assert!(matches!(&chosen.request, ForecastRequest::WhatIf { what_if, .. } if *what_if == WHAT_IFS[0]));
-    assert!(state.popups.is_empty() && text(&state).contains("GPS lost here: …"));
+    assert!(state.popups.is_empty() && screen(&state).contains("GPS lost here: …"));
     let drifts = Forecast {
         end: ForecastEnd::Flight(FlightResult::Aborted),
         reason: "mission given up: The GPS fix was lost: the mission resumes 2 s after it is back."
@@ -241,7 +221,7 @@ fn a_what_if_is_chosen_flown_shown_and_dismissed() {
         screen(&state)
     });
     key(&mut state, KeyCode::Esc);
-    assert!(!text(&state).contains("··· GPS lost here"), "the ghost is gone");
+    assert!(!screen(&state).contains("··· GPS lost here"), "the ghost is gone");
 }
 
 #[test]
@@ -254,7 +234,7 @@ fn hold_here_and_go_on_are_sent_and_offered_when_they_make_sense() {
     assert_eq!(sent(&press(&mut state, 'K')), Some(InFlightCommand::HoldHere));
     assert!(press(&mut state, 'C').is_empty(), "nothing is held yet");
     picture(&mut state, |vehicle| vehicle.nav.as_mut().expect("a navigator").held_by_command = true);
-    let held = text(&state);
+    let held = screen(&state);
     assert!(held.contains("Holds here by command.") && held.contains("C go on"), "{held}");
     assert_eq!(sent(&press(&mut state, 'C')), Some(InFlightCommand::Resume));
 
@@ -290,7 +270,7 @@ fn an_upload_in_flight_takes_effect_at_the_next_engagement_or_by_going_there() {
     press(&mut state, '1');
     press(&mut state, 'U');
     // The active waypoint is no longer in its place.
-    assert!(text(&state).contains("at the next engagement, or with `G`"), "{}", text(&state));
+    assert!(screen(&state).contains("at the next engagement, or with `G`"), "{}", screen(&state));
     press(&mut state, 'y');
     assert!(state.popups.is_empty());
     let id = state.shared.editor.plan().id();
@@ -299,10 +279,10 @@ fn an_upload_in_flight_takes_effect_at_the_next_engagement_or_by_going_there() {
     assert!(reported.contains("at the next engagement; `G` continues on it"), "{reported}");
     let open = state.shared.plan().clone();
     picture(&mut state, |vehicle| vehicle.stored_plan = Some(open));
-    let shown = text(&state);
+    let shown = screen(&state);
     assert!(shown.contains("G fly the new plan") && shown.contains("new plan, for the next"), "{shown}");
     press(&mut state, 'G');
-    assert!(text(&state).contains("Continue on the new plan from"));
+    assert!(screen(&state).contains("Continue on the new plan from"));
 }
 
 /// Types a line of the `:` line and presses Enter.
@@ -321,17 +301,17 @@ fn what_if_takes_values_and_works_on_the_ground() {
         let request = &job(&effects).unwrap_or_else(|| panic!("{value}: {effects:?}")).request;
         assert!(matches!(request, ForecastRequest::WhatIf { plan, .. } if **plan == *state.shared.plan()));
     }
-    assert!(text(&state).contains("payload,,0.4, flown from home: …"), "{}", text(&state));
+    assert!(screen(&state).contains("payload,,0.4, flown from home: …"), "{}", screen(&state));
     for (line, said) in [
         (":what-if wind,5,14@270", "has no duration"),
         (":what-if wnd,,14@270", "There is no what-if wnd,,14@270"),
     ] {
         assert!(job(&enter(&mut state, line)).is_none(), "{line}");
-        assert!(text(&state).contains(said), "{}", text(&state));
+        assert!(screen(&state).contains(said), "{}", screen(&state));
         key(&mut state, KeyCode::Esc);
         key(&mut state, KeyCode::Esc);
     }
     press(&mut state, 'w');
-    assert!(text(&state).contains("What if, flown from home:"), "{}", text(&state));
+    assert!(screen(&state).contains("What if, flown from home:"), "{}", screen(&state));
     assert!(job(&key(&mut state, KeyCode::Enter)).is_some());
 }

@@ -4,13 +4,13 @@ use betadeck::telemetry::NavState;
 use betadeck::ui::editor::{EditorPopup, FormKind};
 use betadeck::ui::files::{Conversion, ConversionLosses, Entry, FileReply, Listing};
 use betadeck::ui::{AppState, Msg, Panel, Popup, draw, update};
-use crossterm::event::{KeyCode, KeyModifiers};
+use crossterm::event::KeyCode;
 use ratatui::Terminal;
 use ratatui::backend::TestBackend;
 use ratatui::layout::Position;
 use strum::VariantNames as _;
 
-use crate::ui::hands::{keys, press, screen, state_with_fix};
+use crate::ui::hands::{key, keys, screen, state_with_fix};
 use crate::ui::{fixture, hands, settings};
 
 const SIZES: [(u16, u16); 4] = [(60, 20), (80, 24), (120, 40), (200, 60)];
@@ -83,7 +83,7 @@ fn the_file_browser() {
         let entries = std::iter::once(entry("older", true)).chain(names).collect();
         let listing = Listing { directory: "/home/pilot/plans".into(), entries };
         update(&mut state, Msg::Files(FileReply::Listed(listing)));
-        press(&mut state, KeyCode::Down, KeyModifiers::NONE);
+        key(&mut state, KeyCode::Down);
         state
     });
     insta::assert_snapshot!("popup_browser", seen);
@@ -215,7 +215,7 @@ fn everything_open() -> Vec<Open> {
     for purpose in ["2 o", "2 s"] {
         let (name, mut state) = waiting(purpose);
         update(&mut state, Msg::Files(FileReply::Listed(listing.clone())));
-        press(&mut state, KeyCode::Down, KeyModifiers::NONE);
+        key(&mut state, KeyCode::Down);
         open.push((format!("{name}, listed"), state));
     }
     for changed in [true, false] {

@@ -25,7 +25,7 @@ pub(crate) fn keys(state: &mut AppState, keys: &str) -> Vec<Effect> {
     for name in keys.split_whitespace() {
         if let Some(text) = name.strip_prefix('\'') {
             for c in text.chars() {
-                effects.extend(press(state, KeyCode::Char(c), KeyModifiers::NONE));
+                effects.extend(press(state, c));
             }
             continue;
         }
@@ -50,19 +50,36 @@ pub(crate) fn keys(state: &mut AppState, keys: &str) -> Vec<Effect> {
             }
             c => KeyCode::Char(c.chars().next().expect("a key")),
         };
-        effects.extend(press(state, code, modifiers));
+        effects.extend(with_modifiers(state, code, modifiers));
     }
     effects
 }
 
-pub(crate) fn press(state: &mut AppState, code: KeyCode, modifiers: KeyModifiers) -> Vec<Effect> {
+/// Presses a key without modifiers.
+pub(crate) fn key(state: &mut AppState, code: KeyCode) -> Vec<Effect> {
+    with_modifiers(state, code, KeyModifiers::NONE)
+}
+
+/// Types a character.
+pub(crate) fn press(state: &mut AppState, c: char) -> Vec<Effect> {
+    key(state, KeyCode::Char(c))
+}
+
+fn with_modifiers(state: &mut AppState, code: KeyCode, modifiers: KeyModifiers) -> Vec<Effect> {
     update(state, Msg::Key(KeyEvent::new(code, modifiers)))
 }
 
+/// Returns the text of the screen, each line in quotes.
 pub(crate) fn screen(state: &AppState) -> String {
-    let mut terminal = Terminal::new(TestBackend::new(state.shared.size.0, state.shared.size.1)).unwrap();
-    terminal.draw(|frame| draw(state, frame)).unwrap();
-    terminal.backend().to_string()
+    drawn(state).to_string()
+}
+
+/// Returns the drawn screen.
+pub(crate) fn drawn(state: &AppState) -> TestBackend {
+    let (width, height) = state.shared.size;
+    let mut terminal = Terminal::new(TestBackend::new(width, height)).expect("a test terminal");
+    terminal.draw(|frame| draw(state, frame)).expect("drawing in memory");
+    terminal.backend().clone()
 }
 
 pub(crate) fn journal_lines(effects: &[Effect]) -> usize {

@@ -1,6 +1,7 @@
 //! The panels World, Log, Graphs and RC: their keys, and their looks at several sizes.
 
 use crate::ui::fixture;
+use crate::ui::hands::{key, press, screen};
 use betadeck::session::SessionView;
 use betadeck::telemetry::snapshot::{FaultView, WindView};
 use betadeck::telemetry::{FaultKind, FaultValue, Turbulence};
@@ -13,25 +14,10 @@ use ratatui::backend::TestBackend;
 /// The sizes that the layouts are designed for.
 const SIZES: [(u16, u16); 4] = [(60, 20), (80, 24), (120, 40), (200, 60)];
 
-fn key(state: &mut AppState, code: KeyCode) -> Vec<Effect> {
-    update(state, Msg::Key(KeyEvent::new(code, KeyModifiers::NONE)))
-}
-
-fn press(state: &mut AppState, c: char) -> Vec<Effect> {
-    key(state, KeyCode::Char(c))
-}
-
 fn type_text(state: &mut AppState, text: &str) {
     for c in text.chars() {
         assert!(press(state, c).is_empty(), "{c} of {text} is text");
     }
-}
-
-fn screen(state: &AppState) -> String {
-    let (width, height) = state.shared.size;
-    let mut terminal = Terminal::new(TestBackend::new(width, height)).expect("a test terminal");
-    terminal.draw(|frame| draw(state, frame)).expect("drawing in memory");
-    terminal.backend().to_string()
 }
 
 /// Returns the requests to the world among the effects.

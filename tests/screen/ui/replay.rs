@@ -16,7 +16,6 @@ use betadeck::ui::{AppState, Effect, Msg, Severity, update};
 
 use crate::ui::fixture;
 use crate::ui::hands::{keys, press, screen};
-use crossterm::event::{KeyCode, KeyModifiers};
 
 const SIZES: [(u16, u16); 4] = [(60, 20), (80, 24), (120, 40), (200, 60)];
 /// The first and the last second of the flight.
@@ -221,7 +220,7 @@ fn keys_play_seek_and_change_the_flight() {
         let [Effect::Send(command)] = &sent[..] else { panic!("{key}: {sent:?}") };
         assert_eq!(format!("{command:?}"), format!("{expected:?}"), "{key}");
     }
-    let played = press(&mut state, KeyCode::Char(' '), KeyModifiers::NONE);
+    let played = press(&mut state, ' ');
     assert!(matches!(played[..], [Effect::Send(Command::Pause(false))]), "{played:?}");
     let stepped = keys(&mut state, ".");
     assert!(matches!(stepped[..], [Effect::Send(Command::Step(10))]), "10 ms of 1 kHz: {stepped:?}");

@@ -1,33 +1,17 @@
 //! Whole screens of the user interface, and a check that no size and no picture breaks it.
 
 use crate::ui::fixture;
+use crate::ui::hands::{drawn, press, screen};
 use betadeck::link::endpoint::EndpointKind;
 use betadeck::plan::FlightPlan;
 use betadeck::session::command::CliOutput;
 use betadeck::telemetry::{ArmingFlag, CannotHold, HoldLimit, NavState};
-use betadeck::ui::{AppState, Msg, Panel, Severity, Theme, draw, update};
+use betadeck::ui::{Msg, Panel, Severity, Theme, update};
 use crossterm::event::{KeyCode, KeyEvent, KeyModifiers};
-use ratatui::Terminal;
-use ratatui::backend::TestBackend;
 use strum::IntoEnumIterator as _;
 
 #[path = "../../../examples/picture/svg/mod.rs"]
 pub(crate) mod svg;
-
-fn screen(state: &AppState) -> TestBackend {
-    let (width, height) = state.shared.size;
-    let mut terminal = Terminal::new(TestBackend::new(width, height)).expect("a test terminal");
-    terminal.draw(|frame| draw(state, frame)).expect("drawing in memory");
-    terminal.backend().clone()
-}
-
-fn text(state: &AppState) -> String {
-    screen(state).to_string()
-}
-
-fn press(state: &mut AppState, key: char) {
-    update(state, Msg::Key(KeyEvent::new(KeyCode::Char(key), KeyModifiers::NONE)));
-}
 
 #[test]
 fn at_start_80x24() {
@@ -83,7 +67,7 @@ fn a_branch_keeps_the_old_track_faint_and_the_old_log_dimmed_120x40() {
 
     let mut state = fixture::state((120, 40), fixture::colour());
     fixture::branch(&mut state);
-    let backend = screen(&state);
+    let backend = drawn(&state);
     insta::assert_snapshot!(backend);
     let buffer = backend.buffer();
     let braille = |colour| {
@@ -135,9 +119,12 @@ fn in_ascii_every_cell_is_ascii_and_the_words_are_all_there() {
         let mut plain = fixture::state((200, 60), fixture::plain());
         fly(&mut rich);
         fly(&mut plain);
-        let plain = text(&plain);
+        let plain = screen(&plain);
         assert!(plain.is_ascii(), "{plain}");
-        assert!(!plain.contains('?') || text(&rich).contains('?'), "a character has no replacement\n{plain}");
+        assert!(
+            !plain.contains('?') || screen(&rich).contains('?'),
+            "a character has no replacement\n{plain}"
+        );
         for word in ["ARRIVED", "COMPLETE", "WP", "2 Plan", "5 CLI", "square.toml"] {
             assert!(plain.contains(word), "{word} missing in\n{plain}");
         }
@@ -151,10 +138,10 @@ fn help_and_quit_are_always_offered() {
         fixture::approach(&mut state);
         for panel in Panel::ALL {
             state.shared.focus = panel;
-            let screen = text(&state);
+            let shown = screen(&state);
             let words: &[&str] = if panel == Panel::Cli { &["Esc leave"] } else { &["? help", "q quit"] };
             for word in words {
-                assert!(screen.contains(word), "{word} missing at {size:?} in {panel:?}\n{screen}");
+                assert!(shown.contains(word), "{word} missing at {size:?} in {panel:?}\n{shown}");
             }
         }
     }
@@ -164,10 +151,10 @@ fn help_and_quit_are_always_offered() {
 fn what_does_not_fit_the_status_line_ends_in_an_ellipsis() {
     let mut state = fixture::state((60, 20), fixture::colour());
     fixture::approach(&mut state);
-    let screen = text(&state);
-    let first = screen.lines().next().expect("a status line");
+    let shown = screen(&state);
+    let first = shown.lines().next().expect("a status line");
     assert!(first.contains("● ARMED AUTOPILOT …  ⊕ 3D 12 sats"), "{first}");
-    let second = screen.lines().nth(1).expect("a status line");
+    let second = shown.lines().nth(1).expect("a status line");
     assert!(second.contains("62.3 m") && second.contains("50.2 m"), "distance and height first: {second}");
 }
 
@@ -178,7 +165,7 @@ fn a_large_cross_track_error_keeps_its_distance_from_its_name() {
     for (xte_m, shown) in [(0.31, "xte +0.3 m"), (-13.2, "xte -13.2 m"), (-1320.0, "xte -1320 m")] {
         let vehicle = std::sync::Arc::make_mut(&mut state.shared.view.vehicle);
         vehicle.nav.as_mut().expect("a mission").xte_m = Some(xte_m);
-        assert!(text(&state).contains(shown), "{}", text(&state));
+        assert!(screen(&state).contains(shown), "{}", screen(&state));
     }
 }
 
@@ -188,8 +175,8 @@ fn the_speed_is_the_wanted_one_until_it_is_measured() {
     for (achieved, shown) in [(0.0, " 8× "), (7.9, " 8× "), (3.0, " 3× ")] {
         state.shared.view.speed_wanted = 8.0;
         state.shared.view.speed_achieved = achieved;
-        let screen = text(&state);
-        let second = screen.lines().nth(1).expect("a status line");
+        let text = screen(&state);
+        let second = text.lines().nth(1).expect("a status line");
         assert!(second.contains(shown), "{achieved}: {second}");
     }
 }
@@ -204,8 +191,8 @@ fn a_busy_door_is_marked_and_named_where_there_is_room() {
             state: betadeck::link::endpoint::EndpointState::Busy,
         };
         state.shared.view.endpoints = vec![door];
-        let screen = text(&state);
-        assert!(screen.contains(shown), "{screen}");
+        let text = screen(&state);
+        assert!(text.contains(shown), "{text}");
     }
 }
 
@@ -216,20 +203,20 @@ fn a_notice_leaves_the_hints_alone_and_loses_no_word() {
     for size in [(60, 20), (80, 24), (200, 60)] {
         let mut state = fixture::state(size, fixture::colour());
         let hints = |screen: &str| screen.lines().last().map(str::to_owned);
-        let before = hints(&text(&state));
+        let before = hints(&screen(&state));
         state.shared.notify(Severity::Warn, long);
         // Zooms a panel, because the log would show the notice, too.
         state.shared.focus = Panel::Rc;
         state.shared.slots.visit(Panel::Rc);
         state.shared.zoomed = true;
-        let screen = text(&state);
+        let shown = screen(&state);
         assert!(
             before.is_some_and(|line| line.contains("? help"))
-                && hints(&screen).is_some_and(|line| line.contains("? help")),
-            "{screen}"
+                && hints(&shown).is_some_and(|line| line.contains("? help")),
+            "{shown}"
         );
         for word in long.split_whitespace().filter(|_| size.0 >= 80) {
-            assert!(screen.contains(word), "{word} missing at {size:?}\n{screen}");
+            assert!(shown.contains(word), "{word} missing at {size:?}\n{shown}");
         }
     }
 }
@@ -242,14 +229,14 @@ fn long_lines_of_the_cli_wrap_and_scroll_to_the_first() {
         let text = format!("waypoint insert {line} 40.4640000 -79.5175000 5000 0 FLYOVER {line} ORBIT\r\n");
         state.panels.cli.console.answer(Some(&CliOutput { text, ..CliOutput::default() }));
     }
-    let screen = text(&state);
-    assert!(screen.contains("29 ORBIT") && !screen.contains('…'), "{screen}");
+    let shown = screen(&state);
+    assert!(shown.contains("29 ORBIT") && !shown.contains('…'), "{shown}");
     for _ in 0..10 {
         update(&mut state, Msg::Key(KeyEvent::new(KeyCode::PageUp, KeyModifiers::NONE)));
     }
-    let screen = text(&state);
-    let first = screen.lines().nth(3).expect("a row");
-    assert!(first.contains("waypoint insert 0 "), "{screen}");
+    let shown = screen(&state);
+    let first = shown.lines().nth(3).expect("a row");
+    assert!(first.contains("waypoint insert 0 "), "{shown}");
 }
 
 #[test]
@@ -264,10 +251,10 @@ fn a_long_plan_scrolls_to_its_last_waypoint_whatever_is_below() {
         press(&mut state, '2');
         press(&mut state, 'z');
         update(&mut state, Msg::Key(KeyEvent::new(KeyCode::End, KeyModifiers::NONE)));
-        let screen = text(&state);
-        assert!(screen.contains("29 [FLYOVER]") && !screen.contains("  0  FLYOVER"), "{screen}");
+        let shown = screen(&state);
+        assert!(shown.contains("29 [FLYOVER]") && !shown.contains("  0  FLYOVER"), "{shown}");
         press(&mut state, 'k');
-        assert!(text(&state).contains("28 [FLYOVER]"));
+        assert!(screen(&state).contains("28 [FLYOVER]"));
     }
 }
 
@@ -275,7 +262,7 @@ fn a_long_plan_scrolls_to_its_last_waypoint_whatever_is_below() {
 fn landing_80x24_shows_the_whole_machine_and_every_guard() {
     let mut state = fixture::state((80, 24), fixture::colour());
     fixture::land(&mut state);
-    let words = text(&state);
+    let words = screen(&state);
     for name in NavState::iter() {
         assert!(words.contains(&name.to_string()), "{name} missing\n{words}");
     }
@@ -307,10 +294,10 @@ fn a_long_advice_leaves_the_machine_on_an_80x24_screen() {
     vehicle.craft.gps_fix = Some(true);
     vehicle.craft.arming_blocked_by = Some(std::iter::once(ArmingFlag::MotorProtocol).collect());
     update(&mut state, Msg::View(view));
-    let screen = text(&state);
-    assert!(screen.contains("motor_pwm_protocol"), "{screen}");
+    let shown = screen(&state);
+    assert!(shown.contains("motor_pwm_protocol"), "{shown}");
     for name in NavState::iter() {
-        assert!(screen.contains(&name.to_string()), "{name} missing\n{screen}");
+        assert!(shown.contains(&name.to_string()), "{name} missing\n{shown}");
     }
 }
 
@@ -318,7 +305,7 @@ fn a_long_advice_leaves_the_machine_on_an_80x24_screen() {
 fn a_small_screen_says_what_it_needs() {
     let mut state = fixture::state((52, 18), fixture::colour());
     fixture::approach(&mut state);
-    assert!(text(&state).contains("at least 60x20, now 52x18"), "{}", text(&state));
+    assert!(screen(&state).contains("at least 60x20, now 52x18"), "{}", screen(&state));
 }
 
 #[test]
@@ -360,7 +347,7 @@ fn a_picture_with_nonsense_numbers_is_drawn() {
         settings.orbit_radius_m = nonsense;
         vehicle.craft.battery_v = Some(nonsense);
         update(&mut state, Msg::View(view));
-        assert!(text(&state).contains("APPROACHING"));
+        assert!(screen(&state).contains("APPROACHING"));
     }
 }
 
@@ -368,7 +355,7 @@ fn a_picture_with_nonsense_numbers_is_drawn() {
 fn the_screen_becomes_a_picture() {
     let mut state = fixture::state((120, 40), fixture::colour());
     fixture::approach(&mut state);
-    let picture = svg::svg(screen(&state).buffer());
+    let picture = svg::svg(drawn(&state).buffer());
     assert!(picture.contains("APPROACHING") && picture.contains("1 Map"));
     assert_eq!(picture.matches("<text").count(), picture.matches("</text>").count());
 }

@@ -7,10 +7,10 @@ use betadeck::flight::sweep::{Fate, SweepPoint};
 use betadeck::lookahead::{ForecastJob, ForecastReply, SurveyJob, SurveyNews, SurveyReply, SurveyRequest};
 use betadeck::scenario::{BuiltinFiles, read};
 use betadeck::ui::{AppState, Effect, Msg, run_line, update};
-use crossterm::event::{KeyCode, KeyModifiers};
+use crossterm::event::KeyCode;
 
 use crate::ui::fixture;
-use crate::ui::hands::{keys, press, screen, state_with_fix};
+use crate::ui::hands::{key, keys, press, screen, state_with_fix};
 
 const SIZES: [(u16, u16); 4] = [(60, 20), (80, 24), (120, 40), (200, 60)];
 
@@ -30,7 +30,7 @@ fn ends(effects: &[Effect]) -> bool {
 }
 
 fn ask(state: &mut AppState, c: char) -> SurveyJob {
-    job(&press(state, KeyCode::Char(c), KeyModifiers::NONE))
+    job(&press(state, c))
 }
 
 fn reply(state: &mut AppState, revision: u64, news: SurveyNews) {
@@ -189,9 +189,9 @@ fn the_last_what_if_flies_a_hundred_flights_and_answers_in_a_line() {
         let mut state = state_with_fix(size);
         keys(&mut state, "w");
         for _ in WHAT_IFS {
-            press(&mut state, KeyCode::Down, KeyModifiers::NONE);
+            key(&mut state, KeyCode::Down);
         }
-        let asked = job(&press(&mut state, KeyCode::Enter, KeyModifiers::NONE));
+        let asked = job(&key(&mut state, KeyCode::Enter));
         assert_eq!(asked.request, SurveyRequest::GoNoGo);
         for flown in 1..=37 {
             reply(&mut state, asked.revision, SurveyNews::Flown(flown));
