@@ -77,7 +77,7 @@ impl Run<'_> {
         let (mut trouble, mut is_in_trouble) = (None, false);
         let mut repetitions = Repetitions::default();
         // Most flights have the same messages.
-        let mut told = BTreeSet::new();
+        let mut printed = BTreeSet::new();
         let gives_up = AtomicBool::new(false);
         let ends = || is_stopped() || gives_up.load(Ordering::Relaxed);
         parallel::all(
@@ -91,7 +91,7 @@ impl Run<'_> {
                     return;
                 }
                 for sentence in done.reported {
-                    if told.insert(sentence.clone()) {
+                    if printed.insert(sentence.clone()) {
                         results.tell(&sentence);
                     }
                 }

@@ -11,7 +11,7 @@ const GROUPS: usize = 5;
 pub(super) fn answer(lab: &Lab) -> String {
     let mut lines = vec![format!("{}: {}", lab.title(), lab.flown()), lab.verdict()];
     let groups = groups(lab);
-    // What is worse comes first, and both kinds of it are shown.
+    // Worse measures and worse properties get half of the lines each if there are so many.
     let mut shown = [0; GROUPS];
     for (most, group) in [(LINES / 2, 0..2), (LINES, 0..GROUPS)] {
         for at in group {

@@ -18,8 +18,8 @@ pub const GRANT_BYTES: usize = 24 + RC_BYTES + FDM_BYTES;
 /// The size of a [`Report`], bytes.
 pub const REPORT_BYTES: usize = 48 + 2 * SERIAL_PORTS;
 
-/// The memory that the program and the executable share. Each side writes its message, then its number, and wakes the other
-/// side if it sleeps, which waits for a change of the number.
+/// The memory that the program and the executable share. Each side writes its message, then its number. The other side waits
+/// for a change of that number, and is woken if it sleeps.
 #[repr(C)]
 pub struct Page {
     /// The number of the newest grant. The boot is [`BOOT_GRANT`].
