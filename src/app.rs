@@ -102,6 +102,7 @@ fn reads_layers(command: Option<&Command>) -> bool {
         Some(
             Command::Check(_)
             | Command::Lab(_)
+            | Command::Rescue(_)
             | Command::Campaign(_)
             | Command::Forecast(_)
             | Command::Plan(_)
@@ -129,6 +130,7 @@ fn may_start_firmware(command: Option<&Command>) -> bool {
         ) => true,
         Some(
             Command::Sitl(_)
+            | Command::Rescue(_)
             | Command::Forecast(_)
             | Command::Open(_)
             | Command::Replay(_)
@@ -153,6 +155,7 @@ fn dispatch(cli: Cli, keymap: Keymap) -> Result<u8, AppError> {
         Some(Command::Fly(args)) => headless::fly::run(&args, &cli.repeat),
         Some(Command::Check(args)) => headless::check::run(&args, &cli.repeat),
         Some(Command::Lab(args)) => headless::lab::run(&args, &cli.repeat),
+        Some(Command::Rescue(args)) => headless::rescue::run(&args),
         Some(Command::Campaign(args)) => headless::campaign::run(&args, &cli.repeat),
         Some(Command::Forecast(args)) => headless::campaign::forecast(&args, &cli.repeat),
         Some(Command::Open(args)) => open::run(&args, keymap),

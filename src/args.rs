@@ -33,6 +33,7 @@ mod plan_arg;
 mod recordings;
 mod repeat;
 mod replay;
+mod rescue;
 mod review;
 mod terrain;
 mod trouble;
@@ -69,6 +70,7 @@ pub use physics::{FdmDialect, PhysicsArgs, PhysicsChoice, SimulatorArgs};
 pub use plan_arg::{PlanArg, PlanArgError, is_descriptor};
 pub use recordings::{FlightsArgs, RecordingArgs};
 pub use replay::ReplayArgs;
+pub use rescue::RescueArgs;
 pub use review::ReviewArgs;
 pub use terrain::TerrainArgs;
 pub use trouble::TroubleArgs;
@@ -238,6 +240,13 @@ pub enum Command {
     ]))]
     Lab(Box<LabArgs>),
 
+    /// Flies GPS RESCUE and a lost link from many places with a pilot's settings: does it come home?
+    #[command(before_help = help::examples(&[
+        ("betadeck rescue diff.txt", "with the answer of your craft to `diff all`"),
+        ("betadeck rescue diff.txt --wind 12 --scenario worst.toml", "in more wind; the worst flights, to be opened"),
+    ]))]
+    Rescue(Box<RescueArgs>),
+
     /// Runs firmware and physics in real time with all doors open, without a screen
     #[command(before_help = help::examples(&[
         ("betadeck serve", "the Betaflight App connects to ws://localhost:6761, scripts send RC to UDP 9004"),
@@ -351,6 +360,7 @@ pub fn parse(arguments: impl IntoIterator<Item = OsString>, layers: &Layers) -> 
             | Command::Sitl(_)
             | Command::Check(_)
             | Command::Lab(_)
+            | Command::Rescue(_)
             | Command::Forecast(_)
             | Command::Open(_)
             | Command::Flights(_)

@@ -17,7 +17,6 @@ mod first_answer;
 mod identify;
 mod kept_flight;
 mod life;
-mod master_settings;
 mod observer;
 mod patience;
 mod permission;
@@ -40,7 +39,6 @@ mod view;
 
 pub use craft_settings::{Allowed, CraftSetting, CraftSettings, cli_block, same_value};
 pub use kept_flight::KeptFlight;
-pub use master_settings::replace_settings;
 pub use observer::{Observer, Simulated};
 pub use patience::{NotReady, Patience, Unready};
 pub use permission::{Access, Denial, Impact, NOT_PERMITTED, NOTHING_MOVES, NOTHING_SIMULATED};

@@ -85,6 +85,8 @@ pub struct FirmwareOptions {
     pub gps_timeout_s: f64,
     /// The declination of the magnetic field at the flying site, degrees east.
     pub declination_deg: f64,
+    /// The altitude of the flying site above mean sea level, m.
+    pub site_alt_m: f64,
     /// Writes blackbox logs, whatever the setting `blackbox_device` says.
     pub logs: bool,
 }
@@ -98,6 +100,7 @@ impl Default for FirmwareOptions {
             attitude: estimator.attitude,
             gps_timeout_s: estimator.gps_timeout_s,
             declination_deg: estimator.declination_deg,
+            site_alt_m: 0.0,
             logs: false,
         }
     }
@@ -239,6 +242,7 @@ impl Firmware {
         self.sensing.watch_fix(&self.setup.parameters, &mut self.outbox);
         self.navigation.observe(
             self.now,
+            &self.setup.parameters,
             &self.sensing,
             &self.safety,
             &self.rc,

@@ -9,5 +9,6 @@ pub(crate) mod compare;
 pub(crate) mod fly;
 pub(crate) mod lab;
 pub(crate) mod report;
+pub(crate) mod rescue;
 pub(crate) mod scenario_folder;
 pub(crate) mod setup;

@@ -5,6 +5,7 @@ use std::path::PathBuf;
 use super::value::{self, OutputFile};
 use super::{FirmwareArgs, FirmwarePortArgs, PlanArg, help};
 use crate::scenario::MAX_FLIGHTS;
+use crate::telemetry::FirmwareProfile;
 
 /// The options for a remote firmware. They conflict with options that fly only the embedded firmware, or do not fly.
 const FIRMWARE_OPTIONS: [&str; 10] = [
@@ -50,6 +51,10 @@ pub struct CheckArgs {
     /// Flies each case with these seeds, such as 1..20, instead of its own
     #[arg(long, value_name = "A..B", value_parser = value::seeds, help_heading = "Which")]
     pub seeds: Option<value::Seeds>,
+
+    /// Laws of the embedded autopilot in each flight: guide, master [default: the scenario's, else guide]
+    #[arg(long, value_name = "NAME", hide_possible_values = true, value_parser = value::profile, conflicts_with_all = FIRMWARE_OPTIONS, help_heading = "How")]
+    pub profile: Option<FirmwareProfile>,
 
     /// Flies each flight this many times and compares the results to the last bit [default: 1]
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=1000), help_heading = "How")]

@@ -31,6 +31,7 @@ impl ConnectArgs {
             ("--heading", flight.heading.is_some()),
             ("--airframe", flight.airframe.is_some()),
             ("--settings", flight.settings.is_some()),
+            ("--profile", flight.profile.is_some()),
             ("--attitude", flight.attitude.is_some()),
             ("--arm-assist", flight.arm_assist.is_some()),
             ("--wind", flight.wind.is_some()),

@@ -4,7 +4,7 @@ use std::path::PathBuf;
 
 use crate::plan::format::HomePosition;
 use crate::sim::{self, Noise, Switches, Wind};
-use crate::telemetry::Turbulence;
+use crate::telemetry::{FirmwareProfile, Turbulence};
 
 use super::help;
 use super::terrain::TerrainArgs;
@@ -34,6 +34,10 @@ pub struct FlightArgs {
     /// Later sources win: the stored configuration, the plan's settings, this file, --set.
     #[arg(long, value_name = "FILE", help_heading = "Craft")]
     pub settings: Option<PathBuf>,
+
+    /// Laws of the embedded autopilot: guide, master [default: the stored configuration's, else guide]
+    #[arg(long, value_name = "NAME", hide_possible_values = true, value_parser = value::profile, help_heading = "Craft")]
+    pub profile: Option<FirmwareProfile>,
 
     /// Directory of the craft's configuration and logs [default: the user's state directory; fly: none, as --fresh]
     #[arg(long, value_name = "DIR", conflicts_with = "fresh", help_heading = "Craft")]

@@ -9,15 +9,15 @@ use super::{FirmwarePortArgs, help};
 #[derive(Debug, Clone, PartialEq, Default, clap::Args)]
 #[command(after_help = help::LAB)]
 pub struct LabArgs {
-    /// The executable to judge alone
+    /// The executable to judge alone, or embedded for the embedded firmware in the profile master
     #[arg(value_name = "EXECUTABLE", required_unless_present_any = ["base", "list"], conflicts_with_all = ["base", "head"])]
     pub alone: Option<PathBuf>,
 
-    /// The executable before the change
+    /// The executable before the change, or embedded
     #[arg(long, value_name = "EXECUTABLE", requires = "head", help_heading = "Firmware")]
     pub base: Option<PathBuf>,
 
-    /// The executable with the change
+    /// The executable with the change, or embedded
     #[arg(long, value_name = "EXECUTABLE", requires = "base", help_heading = "Firmware")]
     pub head: Option<PathBuf>,
 
@@ -45,6 +45,10 @@ pub struct LabArgs {
     #[arg(long, value_name = "N", default_value_t = 1, value_parser = clap::value_parser!(u32).range(1..=1_000_000), help_heading = "Which")]
     pub seed: u32,
 
+    /// Flies each case with these seeds, such as 1..20, instead of its own
+    #[arg(long, value_name = "A..B", value_parser = value::seeds, conflicts_with = "seed", help_heading = "Which")]
+    pub seeds: Option<value::Seeds>,
+
     /// Time after which no further flight begins, such as 120s or 10min [default: 170s, for an answer in three minutes]
     #[arg(long, value_name = "TIME", value_parser = value::wall_time, help_heading = "How")]
     pub budget: Option<f64>,
@@ -68,6 +72,10 @@ pub struct LabArgs {
     /// Writes the answer in Markdown, for a pull request
     #[arg(long, value_name = "FILE", value_parser = value::output_path, help_heading = "Output")]
     pub markdown: Option<PathBuf>,
+
+    /// Writes for each flight and measure the median and the spread of both, in Markdown
+    #[arg(long, value_name = "FILE", value_parser = value::output_path, requires = "base", help_heading = "Output")]
+    pub likeness: Option<PathBuf>,
 
     /// Writes the answer as one HTML file
     #[arg(long, value_name = "FILE", value_parser = value::output_path, help_heading = "Output")]

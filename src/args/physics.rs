@@ -77,6 +77,7 @@ impl PhysicsArgs {
         } else if remote_firmware {
             let given = [
                 mirror,
+                ("--profile", flight.profile.is_some()),
                 ("--attitude", flight.attitude.is_some()),
                 ("--arm-assist", flight.arm_assist.is_some()),
             ];

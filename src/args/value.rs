@@ -6,7 +6,7 @@ use std::str::FromStr;
 
 use crate::plan::format::{Format, setting_line};
 use crate::sim::{Noise, ParseError, ScheduledFault, Switches, Wind, step_us};
-use crate::telemetry::Turbulence;
+use crate::telemetry::{FirmwareProfile, Turbulence};
 
 /// A switch.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, clap::ValueEnum)]
@@ -148,6 +148,11 @@ pub(super) fn noise(text: &str) -> Result<Noise, ParseError> {
 /// Reads the level of turbulence.
 pub(super) fn turbulence(text: &str) -> Result<Turbulence, ParseError> {
     Turbulence::parse(text)
+}
+
+/// Reads the name of a profile of the autopilot.
+pub(super) fn profile(text: &str) -> Result<FirmwareProfile, &'static str> {
+    text.parse().map_err(|_| "write guide or master")
 }
 
 /// Checks a switch of the world and returns it as text. The switches are joined later, in their order.

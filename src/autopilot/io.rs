@@ -54,6 +54,8 @@ pub struct NavInputs {
     pub vel_ne: Vector2<f64>,
     /// Estimated altitude above home, m.
     pub alt_m: f64,
+    /// Altitude above the site by the newest sample of the barometer alone, m, if known.
+    pub pressure_alt_m: Option<f64>,
     /// Estimated climb rate, m/s, up positive.
     pub climb_mps: f64,
     /// Estimated heading, rad clockwise from north.
@@ -98,6 +100,7 @@ impl NavInputs {
             pos_ne: Vector2::zeros(),
             vel_ne: Vector2::zeros(),
             alt_m: 0.0,
+            pressure_alt_m: None,
             climb_mps: 0.0,
             heading_rad: 0.0,
             yaw_rate_rps: 0.0,

@@ -89,9 +89,9 @@ impl Navigator {
         &self.telemetry
     }
 
-    /// Takes the events since the last call, oldest first.
-    pub fn drain_events(&mut self) -> arrayvec::Drain<'_, NavEvent, EVENT_CAPACITY> {
-        self.events.drain(..)
+    /// Takes the oldest event that was not taken yet.
+    pub fn take_event(&mut self) -> Option<NavEvent> {
+        self.events.pop_at(0)
     }
 
     /// Runs one update (100 Hz): at most one transition, then the demands. `stored` is the plan in the craft's

@@ -7,7 +7,7 @@ mod value;
 
 use crate::geo::GRAVITY;
 use crate::math;
-use crate::telemetry::{FenceAction, RxLossPolicy};
+use crate::telemetry::{FenceAction, FirmwareProfile, RxLossPolicy};
 use value::Value;
 pub use value::YawMode;
 
@@ -35,10 +35,12 @@ pub struct Field {
 /// The effect of a parameter.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Effect {
-    /// The autopilot uses it.
+    /// Both profiles use it.
     Live,
-    /// It is stored only, for other firmware versions.
-    Stored,
+    /// The profile `guide` uses it. In `master` it is stored only.
+    Guide,
+    /// The profile `master` uses it. In `guide` it is stored only.
+    Master,
 }
 
 /// Generates struct, defaults and table from one list, so that each name, range and default is written only once.
@@ -84,6 +86,9 @@ macro_rules! parameters {
 }
 
 parameters! {
+    /// The laws that fly the craft.
+    "ap_profile" profile: FirmwareProfile = FirmwareProfile::Guide, 0..=1, Live,
+        "Laws of the autopilot: those of the test guide, or of today's master.";
     /// Altitude (m) below which a touchdown may be declared.
     "ap_landing_altitude_m" landing_altitude_m: u8 = 4, 0..=200, Live,
         "Height below which a touchdown may be declared, m.";
@@ -120,29 +125,27 @@ parameters! {
     /// Acceleration feedback of the direct law, 0.08 deg per m/s².
     "ap_position_a" position_a: u8 = 30, 0..=200, Live,
         "Tilt response to acceleration, and weight of the accelerometer.";
-    /// Stored, without effect.
-    "ap_position_f" position_f: u8 = 30, 0..=200, Stored,
+    "ap_position_f" position_f: u8 = 30, 0..=200, Master,
         "Tilt response to the commanded speed.";
     /// Low-pass of the measured acceleration, 0.1 Hz.
     "ap_position_cutoff" position_cutoff: u8 = 30, 1..=250, Live,
         "Smoothing of the tilt angle, 0.1 Hz.";
-    /// Stored, without effect, cm/s.
-    "ap_stop_threshold" stop_threshold: u8 = 10, 0..=100, Stored,
+    "ap_stop_threshold" stop_threshold: u8 = 10, 0..=100, Master,
         "Speed below which a hold counts as stopped, cm/s.";
     /// Maximum tilt, deg.
     "ap_max_angle" max_angle: u8 = 50, 10..=70, Live,
         "Maximum tilt of the autopilot, deg; also sets the turn radius.";
     /// `true` if holds use the speed law too, else the direct law.
-    "ap_velocity_control_enable" velocity_control_enable: bool = true, 0..=1, Live,
+    "ap_velocity_control_enable" velocity_control_enable: bool = true, 0..=1, Guide,
         "Control the speed over ground, not only the position.";
     /// Speed error gain, 0.1 deg per m/s.
-    "ap_velocity_p" velocity_p: u8 = 50, 0..=200, Live,
+    "ap_velocity_p" velocity_p: u8 = 50, 0..=200, Guide,
         "Tilt response to speed error, 0.1 deg per m/s.";
     /// Speed error integral gain, 0.1 deg per m.
-    "ap_velocity_i" velocity_i: u8 = 10, 0..=200, Live,
+    "ap_velocity_i" velocity_i: u8 = 10, 0..=200, Guide,
         "Tilt response to lasting speed error, 0.1 deg per m.";
     /// Acceleration damping, 0.1 deg per m/s².
-    "ap_velocity_d" velocity_d: u8 = 5, 0..=100, Live,
+    "ap_velocity_d" velocity_d: u8 = 5, 0..=100, Guide,
         "Tilt response to acceleration, 0.1 deg per m/s².";
     /// Drag feed-forward, 1e-4 deg per (m/s)².
     "ap_velocity_drag_coeff" velocity_drag_coeff: u16 = 50, 0..=1000, Live,
@@ -157,10 +160,10 @@ parameters! {
     "ap_waypoint_hold_radius" waypoint_hold_radius: u16 = 200, 50..=1000, Live,
         "Distance at which HOLD, LAND and TAKEOFF waypoints count as reached, cm.";
     /// Stick deflection (full stick = 500) beyond which the pilot overrides.
-    "ap_stick_deadband" stick_deadband: u16 = 50, 0..=500, Live,
+    "ap_stick_deadband" stick_deadband: u16 = 50, 0..=500, Guide,
         "Stick movement beyond which the pilot steers, µs.";
     /// Throttle stick movement that takes over a hold after a mission was given up, µs.
-    "ap_throttle_deadband" throttle_deadband: u16 = 50, 0..=500, Live,
+    "ap_throttle_deadband" throttle_deadband: u16 = 50, 0..=500, Guide,
         "Throttle movement that takes over after a mission was aborted, µs.";
     /// Direction of the nose.
     "ap_yaw_mode" yaw_mode: YawMode = YawMode::Velocity, 0..=4, Live,
@@ -177,38 +180,31 @@ parameters! {
     /// Ground speed from which the course is trusted, cm/s.
     "ap_min_forward_velocity" min_forward_velocity: u16 = 300, 10..=500, Live,
         "Speed above which the course is trusted, cm/s.";
-    /// Stored, without effect, cm/s.
-    "ap_nav_corner_speed" nav_corner_speed: u16 = 220, 50..=2000, Stored,
+    "ap_nav_corner_speed" nav_corner_speed: u16 = 220, 50..=2000, Master,
         "Speed through corners, cm/s.";
-    /// Stored, without effect, cm/s.
-    "ap_nav_corner_delta_v" nav_corner_delta_v: u16 = 440, 100..=4000, Stored,
+    "ap_nav_corner_delta_v" nav_corner_delta_v: u16 = 440, 100..=4000, Master,
         "Change of velocity allowed at a corner, cm/s.";
-    /// Stored, without effect, cm/s².
-    "ap_nav_decel" nav_decel: u16 = 250, 20..=1000, Stored,
+    "ap_nav_decel" nav_decel: u16 = 250, 20..=1000, Master,
         "Braking before corners, cm/s².";
-    /// Stored, without effect, cm/s².
-    "ap_nav_accel" nav_accel: u16 = 250, 20..=1000, Stored,
+    "ap_nav_accel" nav_accel: u16 = 250, 20..=1000, Master,
         "Acceleration after corners, cm/s².";
-    /// Stored, without effect, ds.
-    "ap_nav_carrot_lead_time" nav_carrot_lead_time: u8 = 12, 2..=40, Stored,
+    "ap_nav_carrot_lead_time" nav_carrot_lead_time: u8 = 12, 2..=40, Master,
         "Time by which the aim point leads the craft, 0.1 s.";
-    /// Stored, without effect, cm.
-    "ap_nav_carrot_lead_max" nav_carrot_lead_max: u16 = 2500, 600..=6000, Stored,
+    "ap_nav_carrot_lead_max" nav_carrot_lead_max: u16 = 2500, 600..=6000, Master,
         "Maximum distance of the aim point, cm.";
-    /// Stored, without effect, cm.
-    "ap_nav_preturn_dist" nav_preturn_dist: u16 = 1500, 500..=5000, Stored,
+    "ap_nav_preturn_dist" nav_preturn_dist: u16 = 1500, 500..=5000, Master,
         "Distance before a corner at which the turn begins, cm.";
     /// Tilt that sets the acceleration when speed builds up, deg; 0 = half of the maximum tilt.
-    "ap_velocity_buildup_max_pitch" velocity_buildup_max_pitch: u8 = 8, 0..=20, Live,
+    "ap_velocity_buildup_max_pitch" velocity_buildup_max_pitch: u8 = 8, 0..=20, Guide,
         "Nose-down tilt that helps a slow craft to gain speed, deg.";
     /// Angular rate along hold patterns, deg/s.
-    "ap_max_turn_rate" max_turn_rate: u8 = 3, 1..=90, Live,
+    "ap_max_turn_rate" max_turn_rate: u8 = 3, 1..=90, Guide,
         "Angular speed along orbits and figures of eight, deg/s.";
     /// Radius of ORBIT, cm.
-    "ap_hold_orbit_radius" hold_orbit_radius: u16 = 1000, 300..=5000, Live,
+    "ap_hold_orbit_radius" hold_orbit_radius: u16 = 1000, 300..=5000, Guide,
         "Radius of orbits, cm.";
     /// Distance between the circle centres of FIGURE8, cm.
-    "ap_hold_figure8_width" hold_figure8_width: u16 = 2000, 500..=10000, Live,
+    "ap_hold_figure8_width" hold_figure8_width: u16 = 2000, 500..=10000, Guide,
         "Distance between the two circles of a figure of eight, cm.";
     /// Sink rate of a landing, cm/s.
     "ap_landing_descent_rate" landing_descent_rate: u8 = 50, 10..=200, Live,
@@ -217,40 +213,40 @@ parameters! {
     "ap_landing_detection_time" landing_detection_time: u8 = 10, 5..=50, Live,
         "Time for which the signs of a touchdown must last, 0.1 s.";
     /// `true` if a landing descends on a spiral.
-    "ap_landing_spiral_enable" landing_spiral_enable: bool = true, 0..=1, Live,
+    "ap_landing_spiral_enable" landing_spiral_enable: bool = true, 0..=1, Guide,
         "Descend in a spiral.";
     /// Radius of the spiral, cm.
-    "ap_landing_spiral_radius" landing_spiral_radius: u16 = 200, 50..=2000, Live,
+    "ap_landing_spiral_radius" landing_spiral_radius: u16 = 200, 50..=2000, Guide,
         "Radius of that spiral, cm.";
     /// Angular rate of the spiral, deg/s.
-    "ap_landing_spiral_rate" landing_spiral_rate: u8 = 10, 1..=45, Live,
+    "ap_landing_spiral_rate" landing_spiral_rate: u8 = 10, 1..=45, Guide,
         "Angular speed of that spiral, deg/s.";
     /// Ground speed below which a touchdown may be declared, cm/s.
     "ap_landing_velocity_threshold" landing_velocity_threshold: u8 = 50, 10..=200, Live,
         "Ground speed below which a touchdown is possible, cm/s.";
     /// Required distance of the throttle below the hover throttle for a touchdown, µs.
-    "ap_landing_throttle_threshold" landing_throttle_threshold: u16 = 100, 10..=500, Live,
+    "ap_landing_throttle_threshold" landing_throttle_threshold: u16 = 100, 10..=500, Guide,
         "Throttle this far below hover is a sign of a touchdown, µs.";
     /// `true` if legs are followed as lines.
-    "ap_l1_enable" l1_enable: bool = true, 0..=1, Live,
+    "ap_l1_enable" l1_enable: bool = true, 0..=1, Guide,
         "Follow the line between waypoints instead of pointing at the next one.";
     /// Period of the path following, ds.
-    "ap_l1_period" l1_period: u16 = 20, 5..=100, Live,
+    "ap_l1_period" l1_period: u16 = 20, 5..=100, Guide,
         "Period of the path following; shorter is sharper, 0.1 s.";
     /// Minimum lookahead, cm.
-    "ap_l1_min_lookahead" l1_min_lookahead: u16 = 1000, 100..=5000, Live,
+    "ap_l1_min_lookahead" l1_min_lookahead: u16 = 1000, 100..=5000, Guide,
         "Minimum distance of the aim point on the path, cm.";
     /// Maximum lookahead, cm; takes precedence over the minimum.
-    "ap_l1_max_lookahead" l1_max_lookahead: u16 = 10000, 1000..=50000, Live,
+    "ap_l1_max_lookahead" l1_max_lookahead: u16 = 10000, 1000..=50000, Guide,
         "Maximum distance of the aim point on the path, cm.";
     /// Cross-track error beyond which the leg starts again at the craft, cm.
-    "ap_l1_max_cross_track_error" l1_max_cross_track_error: u16 = 10000, 1000..=50000, Live,
+    "ap_l1_max_cross_track_error" l1_max_cross_track_error: u16 = 10000, 1000..=50000, Guide,
         "Cross-track error above which the craft flies straight back to the path, cm.";
     /// Turn rate of arcs at the start of a leg, deg/s; 0 = no arcs.
-    "ap_l1_turn_rate" l1_turn_rate: u8 = 0, 0..=90, Live,
+    "ap_l1_turn_rate" l1_turn_rate: u8 = 0, 0..=90, Guide,
         "Angular speed of the arcs that round corners, deg/s; 0 for no arcs.";
     /// Altitude (m) to climb to on the spot before the first leg; 0 = none.
-    "ap_min_nav_altitude_m" min_nav_altitude_m: u8 = 5, 0..=50, Live,
+    "ap_min_nav_altitude_m" min_nav_altitude_m: u8 = 5, 0..=50, Guide,
         "Height below which the craft climbs before the first leg, m.";
     /// Reaction to a lost receiver.
     "ap_rx_loss_policy" rx_loss_policy: RxLossPolicy = RxLossPolicy::Disable, 0..=2, Live,
@@ -353,9 +349,9 @@ mod tests {
     }
 
     #[test]
-    fn there_are_fifty_nine_and_two() {
+    fn there_are_sixty_and_two() {
         let own = Params::FIELDS.iter().filter(|field| field.name.starts_with("ap_")).count();
-        assert_eq!((own, Params::FIELDS.len()), (59, 61));
+        assert_eq!((own, Params::FIELDS.len()), (60, 62));
         assert_eq!(own + Params::SHARED, Params::FIELDS.len());
     }
 

@@ -1,8 +1,8 @@
 //! Uploads a plan to a remote flight controller through the command line, as a ground station does, and reads it back.
 //! Downloads a plan in the same way.
 
-use super::master_settings::replaced_reported;
 use crate::firmware::cli::{CliReply, RefusedLine};
+use crate::flight::setup::replaced_reported;
 use crate::plan::format::{self, Format};
 use crate::plan::{AltitudeError, AltitudeReference, CraftPlan, FlightPlan, upload_lines};
 use crate::vehicle::{Answer, Ticket, Vehicle, VehicleCommand};

@@ -51,6 +51,7 @@ pub use gps::GpsStatus;
 pub use schedule::DueTasks;
 pub use tuning::{AttitudeSource, EstimatorOptions, EstimatorTuning};
 pub use vertical::AltitudeSource;
+pub(super) use vertical::pressure_altitude_m;
 
 /// The counts of an accelerometer at 1 g, for protocols and logs.
 pub const ACC_COUNTS_PER_G: f64 = 256.0;

@@ -6,9 +6,9 @@
 
 use crate::autopilot::io::NavInputs;
 use crate::autopilot::rx_loss::{RxLossAction, RxLossFacts, decide};
-use crate::autopilot::{Navigator, Params, Rescue};
+use crate::autopilot::{Autopilot, Params, Rescue};
 use crate::plan::FlightPlan;
-use crate::telemetry::{AbortReason, NavState, Refusal};
+use crate::telemetry::{AbortReason, FirmwareProfile, NavState, Refusal};
 
 use super::failsafe::{MissionStatus, Procedure, Response};
 use super::modes::AfterAbort;
@@ -49,20 +49,20 @@ pub struct Orders {
 
 impl Orders {
     /// Returns the holds that stay on after an aborted mission, while its order remains.
-    pub fn after_abort(&self, navigator: &Navigator) -> AfterAbort {
+    pub fn after_abort(&self, navigator: &Autopilot) -> AfterAbort {
         match navigator.given_up() {
             None => AfterAbort::Nothing,
             // The pilot of a rescue may no longer see the craft, so it does not wait in the air for a fix.
-            Some(AbortReason::GpsLost) if navigator.has_landing_to_resume() || self.by_rescue_switch => {
-                AfterAbort::Descent
-            }
-            Some(AbortReason::GpsLost) => AfterAbort::Altitude,
+            Some(AbortReason::GpsLost) if self.by_rescue_switch => AfterAbort::Descent,
+            Some(_) if navigator.descends_after_abort() => AfterAbort::Descent,
+            // Without a heading, too, a tilt leads nowhere.
+            Some(AbortReason::GpsLost | AbortReason::MagFault) => AfterAbort::Altitude,
             Some(AbortReason::Stalled | AbortReason::Flyaway | AbortReason::NoPlan) => AfterAbort::Position,
         }
     }
 
     /// Returns the status of the navigator's mission, for the failsafe.
-    pub fn status(&self, navigator: &Navigator) -> MissionStatus {
+    pub fn status(&self, navigator: &Autopilot) -> MissionStatus {
         match (navigator.is_flying(), navigator.state()) {
             (true, NavState::Complete) => MissionStatus::Over,
             (true, _) => MissionStatus::Flying,
@@ -77,7 +77,7 @@ impl Orders {
     /// Returns a refusal if the craft is not armed or has no fix or no altitude.
     pub fn return_to_home(
         &mut self,
-        navigator: &mut Navigator,
+        navigator: &mut Autopilot,
         inputs: &NavInputs,
         params: &Params,
         rescue: Option<Rescue>,
@@ -99,10 +99,10 @@ impl Orders {
     }
 
     /// Cancels a command. The switch decides again, and starts its mission again if it is on.
-    pub fn take_back(&mut self, navigator: &mut Navigator) {
+    pub fn take_back(&mut self, navigator: &mut Autopilot, inputs: &NavInputs) {
         if self.is_commanded() {
             self.cancel();
-            navigator.disengage();
+            navigator.disengage(inputs);
         }
     }
 
@@ -114,7 +114,7 @@ impl Orders {
     /// Runs one update, before the navigator's own.
     pub fn update(
         &mut self,
-        navigator: &mut Navigator,
+        navigator: &mut Autopilot,
         inputs: &NavInputs,
         params: &Params,
         rescue: &RescueConfig,
@@ -136,7 +136,7 @@ impl Orders {
                 self.cancel();
             }
             if facts.failsafe_mission.is_none() && navigator.is_flying() {
-                navigator.disengage();
+                navigator.disengage(inputs);
             }
             return;
         }
@@ -147,14 +147,14 @@ impl Orders {
             std::mem::replace(&mut self.switch_was, facts.autopilot_switch) && !facts.autopilot_switch;
         if released && !self.by_rescue_switch {
             self.cancel();
-            navigator.disengage();
+            navigator.disengage(inputs);
         }
         self.update_rescue_switch(navigator, inputs, params, rescue, facts);
 
         let wanted = facts.autopilot_switch && !self.switch_spent || self.order.is_some();
         if navigator.is_flying() {
             if !wanted {
-                navigator.disengage();
+                navigator.disengage(inputs);
             }
             return;
         }
@@ -175,7 +175,7 @@ impl Orders {
 
     fn update_rescue_switch(
         &mut self,
-        navigator: &mut Navigator,
+        navigator: &mut Autopilot,
         inputs: &NavInputs,
         params: &Params,
         rescue: &RescueConfig,
@@ -187,7 +187,7 @@ impl Orders {
                 self.cancel();
                 if facts.autopilot_switch {
                     // Restarts the mission that the rescue replaced.
-                    navigator.disengage();
+                    navigator.disengage(inputs);
                 }
             }
             return;
@@ -219,6 +219,7 @@ impl Orders {
         };
         Rescue {
             altitude_m,
+            near_climb_m: is_near.then_some(config.initial_climb_m),
             climb_mps: config.ascend_mps,
             speed_mps: config.ground_speed_mps,
             descend_mps: config.descend_mps,
@@ -234,7 +235,7 @@ impl Orders {
 /// Repeats an aborted return, but only after a lost fix. One that makes no progress lands instead.
 fn repeat(
     Return(rescue): Return,
-    navigator: &mut Navigator,
+    navigator: &mut Autopilot,
     inputs: &NavInputs,
     params: &Params,
 ) -> Result<(), Refusal> {
@@ -246,7 +247,7 @@ fn repeat(
 
 /// Returns the response of stage 2 of the failsafe in the present situation.
 pub fn failsafe_response(
-    navigator: &Navigator,
+    navigator: &Autopilot,
     params: &Params,
     procedure: Procedure,
     fix: bool,
@@ -257,8 +258,12 @@ pub fn failsafe_response(
         state: navigator.state(),
         fix,
     });
+    let is_master = navigator.profile() == FirmwareProfile::Master;
     match decision.action {
         RxLossAction::None if decision.autopilot_flag => Response::Continue,
+        RxLossAction::None | RxLossAction::EmergencyLand if is_master => {
+            Response::Procedure(Procedure::AutoLand)
+        }
         RxLossAction::None => Response::KeepLanding,
         RxLossAction::EmergencyLand => Response::EmergencyLand,
         RxLossAction::Procedure => Response::Procedure(procedure),

@@ -12,16 +12,19 @@ mod current_firmware;
 mod foreign;
 mod judge;
 mod parse;
+mod profile;
 mod store;
 mod table;
 mod unit;
 
-pub use current_firmware::beyond_current_firmware;
+pub use current_firmware::{acts_in_master, beyond_current_firmware};
 pub use foreign::foreign_name;
 pub use judge::judge;
 pub use parse::AssignError;
 pub use store::{Settings, Value};
 pub use table::{PORT_NAMES, SETTINGS, find, group_of, grouped, needs_restart};
+
+use crate::telemetry::FirmwareProfile;
 
 /// The scope of a setting: one value for the craft, or one in each profile of a kind.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash, strum::EnumIter)]
@@ -133,6 +136,9 @@ pub enum Kind {
 pub enum Role {
     /// The setting changes the behaviour of the vehicle.
     Live,
+    /// The setting changes the behaviour in one profile of the autopilot. In the other one it is carried.
+    #[strum(to_string = "{0}")]
+    Only(FirmwareProfile),
     /// The setting is validated, stored and printed, but has no effect.
     #[strum(to_string = "carried")]
     Carry,

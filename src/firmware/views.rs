@@ -1,6 +1,7 @@
 //! The views of displays and links on the firmware: plain data of the present instant.
 
 use crate::autopilot::io::NavOutput;
+use crate::autopilot::master::PATTERN_RPS;
 use crate::geo::LatLon;
 use crate::math;
 use crate::plan::FlightPlan;
@@ -8,7 +9,8 @@ use crate::plan::estimate::{ReturnFlight, ReturnMode, TouchdownThrottle};
 use crate::signals::{RC_CHANNELS, RcSource, SimTime};
 use crate::telemetry::snapshot::{CraftView, EstimateView, GpsView, ModeRange, SettingsView};
 use crate::telemetry::{
-    ArmingFlags, DisarmReason, FailsafeAhead, FirmwareEvent, ModeBox, ModeFlags, NavTelemetry,
+    ArmingFlags, DisarmReason, FailsafeAhead, FirmwareEvent, FirmwareProfile, ModeBox, ModeFlags,
+    NavTelemetry,
 };
 
 use super::blackbox::{LogStep, Recorder};
@@ -268,15 +270,25 @@ impl Firmware {
     /// Returns the settings that affect the map.
     pub fn settings_view(&self) -> SettingsView {
         let nav = &self.parameters().nav;
+        // Master flies both patterns within the hold radius.
+        let [orbit_radius_m, figure8_width_m, max_turn_rate_dps] = match nav.profile {
+            FirmwareProfile::Guide => [
+                f64::from(nav.hold_orbit_radius) / 100.0,
+                f64::from(nav.hold_figure8_width) / 100.0,
+                f64::from(nav.max_turn_rate),
+            ],
+            FirmwareProfile::Master => [nav.hold_radius_m(), nav.hold_radius_m(), PATTERN_RPS.to_degrees()],
+        };
         SettingsView {
+            profile: nav.profile,
             arrival_radius_m: nav.arrival_radius_m(),
             hold_radius_m: nav.hold_radius_m(),
-            orbit_radius_m: f64::from(nav.hold_orbit_radius) / 100.0,
-            figure8_width_m: f64::from(nav.hold_figure8_width) / 100.0,
+            orbit_radius_m,
+            figure8_width_m,
             fence_m: nav.fence_m(),
             max_angle_deg: f64::from(nav.max_angle),
             max_velocity_mps: nav.max_velocity_mps(),
-            max_turn_rate_dps: f64::from(nav.max_turn_rate),
+            max_turn_rate_dps,
             climb_mps: nav.climb_rate_mps(),
             landing_mps: nav.descent_rate_mps(),
             landing_alt_m: f64::from(nav.landing_altitude_m),

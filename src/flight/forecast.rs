@@ -203,6 +203,7 @@ impl ForecastRun {
             Some(Refusal::Aborted(AbortReason::GpsLost)) => "the GPS fix is lost",
             Some(Refusal::Aborted(AbortReason::Stalled)) => "no progress",
             Some(Refusal::Aborted(AbortReason::Flyaway)) => "blown away from its waypoint",
+            Some(Refusal::Aborted(AbortReason::MagFault)) => "the course does not fit the heading",
             Some(_) => return (ForecastEnd::Flight(result), reason),
         };
         (ForecastEnd::Flight(result), format!("mission given up, {why}"))

@@ -277,6 +277,7 @@ impl Judge {
                 (_, Some(refusal)) => refusal.sentence(),
                 (Some(AbortReason::GpsLost), None) => "the GPS fix was lost.".into(),
                 (Some(AbortReason::NoPlan), None) => "the plan was cleared in flight.".into(),
+                (Some(AbortReason::MagFault), None) => "the course did not fit the heading.".into(),
                 _ if facts.failsafe => "a failsafe procedure flies.".into(),
                 _ if facts.entered_for == Some(TransitionReason::Disengage) => {
                     "the AUTOPILOT switch was turned off; turned on again it resumes.".into()

@@ -7,10 +7,12 @@
 mod boot_lines;
 mod home;
 mod log_lines;
+mod master_settings;
 mod notice;
 
 pub use boot_lines::BootLines;
 pub use log_lines::{LoggedSetting, logged_settings, settings_of_log};
+pub use master_settings::{replace_settings, replaced_reported, replacement};
 pub use notice::SetupNotice;
 
 use crate::firmware::cli::BuildInfo;
@@ -19,6 +21,7 @@ use crate::firmware::{AttitudeSource, FirmwareOptions, settings};
 use crate::pilot::StickInput;
 use crate::plan::format::{self, HomePosition, PlanError, PlanFile, SettingFault};
 use crate::sim::{WorldConfig, WorldError};
+use crate::telemetry::FirmwareProfile;
 use crate::vehicle::{Vehicle, VehicleCommand, VehicleConfig};
 
 /// The silence of the GPS that ends the fix while an external simulator moves the craft, s. Its packets may stall.
@@ -27,6 +30,9 @@ const EXTERNAL_GPS_TIMEOUT_S: f64 = 2.5;
 /// The declination of the field for the virtual magnetometer while an external simulator moves the craft, degrees
 /// east.
 const EXTERNAL_DECLINATION_DEG: f64 = 2.0;
+
+/// The source of the line that chooses a profile.
+const OF_PROFILE: &str = "--profile";
 
 /// The physics that moves the craft.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
@@ -112,14 +118,38 @@ impl FlightSetup {
         Ok((configuration, notices.contains(&SetupNotice::StarterModes)))
     }
 
+    /// Flies by the laws of a profile, whatever the stored configuration says. If the lines are not the `own_lines` of the
+    /// user, settings of the guide with which that profile does not fly as expected are replaced.
+    pub fn use_profile(&mut self, profile: FirmwareProfile, own_lines: bool) {
+        self.boot_lines.retain(|lines| !lines.choose_profile());
+        if profile == FirmwareProfile::Master && !own_lines {
+            self.boot_lines.iter_mut().for_each(BootLines::replace_settings);
+        }
+        let mut settings = vec![profile.setting()];
+        if profile == FirmwareProfile::Master {
+            // It trusts the compass only on request.
+            settings.push("trust_mag = ON".to_owned());
+        }
+        self.boot_lines.insert(0, BootLines::settings(OF_PROFILE, &settings));
+    }
+
     /// Returns the configuration of the craft at boot, and the notices for its user.
     fn configure(&self) -> Result<(Configuration, Vec<SetupNotice>), SetupError> {
         let mut notices = Vec::new();
         let mut configuration = self.stored.clone();
-        let of_plan =
+        let site_alt_m = self.boot_home().0.alt_amsl_m;
+        let (of_profile, others): (Vec<_>, Vec<_>) =
+            self.boot_lines.iter().partition(|lines| lines.choose_profile());
+        for lines in of_profile {
+            lines.apply(&mut configuration, site_alt_m).map_err(SetupError::BootLines)?;
+        }
+        let mut of_plan =
             BootLines::settings(format!("settings of plan {}", self.plan.name), &self.plan.settings);
-        for lines in std::iter::once(&of_plan).chain(&self.boot_lines) {
-            let reported = lines.apply(&mut configuration).map_err(SetupError::BootLines)?;
+        if configuration.settings.profile() == FirmwareProfile::Master {
+            of_plan.replace_settings();
+        }
+        for lines in std::iter::once(&of_plan).chain(others) {
+            let reported = lines.apply(&mut configuration, site_alt_m).map_err(SetupError::BootLines)?;
             // Two sources may give the same value.
             for notice in reported.into_iter().map(SetupNotice::Firmware) {
                 if !notices.contains(&notice) {
@@ -140,11 +170,11 @@ impl FlightSetup {
             return self.build_remote();
         }
         let (configuration, notices) = self.configure()?;
-        let firmware = self.firmware_options();
         let (home, home_notice) = match self.physics {
             PhysicsSource::Embedded => self.boot_home(),
             PhysicsSource::External => (self.world.home, None),
         };
+        let firmware = FirmwareOptions { site_alt_m: home.alt_amsl_m, ..self.firmware_options() };
         let world = WorldConfig { home, ..self.world };
         let config = VehicleConfig { world, firmware, configuration, live: self.live };
         let mut vehicle = match self.physics {

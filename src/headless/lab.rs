@@ -16,10 +16,12 @@ use crate::process::error::AppError;
 use crate::process::interrupt::interrupt_flag;
 use crate::process::{error, parallel};
 use crate::report::lab::{Lab, LabFlight};
-use fly::Pair;
+use fly::{Build, Pair};
 use outputs::Outputs;
 use programme::Programme;
 
+/// The word for the embedded firmware in place of an executable.
+const EMBEDDED: &str = "embedded";
 /// The default time after which no further flight begins, s. The flights that are in the air then take a few seconds more.
 const BUDGET_S: f64 = 170.0;
 /// The flights at the beginning after which a firmware that could fly none of them is given up.
@@ -34,9 +36,9 @@ pub(crate) fn run(args: &LabArgs, repeat: &[String]) -> Result<u8, AppError> {
     let head = args.head.as_deref().or(args.alone.as_deref());
     let head = head.ok_or_else(|| AppError::input("name an executable"))?;
     let mut notices = Vec::new();
-    let base = args.base.as_deref().map(|path| firmware(args, path, "--base ", &mut notices)).transpose()?;
+    let base = args.base.as_deref().map(|path| build(args, path, "--base ", &mut notices)).transpose()?;
     let option = if args.head.is_some() { "--head " } else { "" };
-    let firmwares = (base, firmware(args, head, option, &mut notices)?);
+    let builds = (base, build(args, head, option, &mut notices)?);
     let outputs = Outputs::prepare(args, repeat)?;
     notices.iter().for_each(|notice| error::tell(notice));
     if let Some(folder) = &args.keep {
@@ -46,7 +48,7 @@ pub(crate) fn run(args: &LabArgs, repeat: &[String]) -> Result<u8, AppError> {
     }
     let interrupted = interrupt_flag()?;
     let started = Stopwatch::start();
-    let flights = fly(args, &programme, &firmwares, &interrupted, &started)?;
+    let flights = fly(args, &programme, &builds, &interrupted, &started)?;
     let names =
         (args.base.as_deref().map(|path| name(path, head)), name(head, args.base.as_deref().unwrap_or(head)));
     let lab = Lab::new(names, programme.measures(), flights, programme.entries().len(), started.seconds());
@@ -62,7 +64,7 @@ pub(crate) fn run(args: &LabArgs, repeat: &[String]) -> Result<u8, AppError> {
 fn fly(
     args: &LabArgs,
     programme: &Programme,
-    firmwares: &(Option<RemoteFirmware>, RemoteFirmware),
+    builds: &(Option<Build>, Build),
     interrupted: &Arc<AtomicBool>,
     started: &Stopwatch,
 ) -> Result<Vec<LabFlight>, AppError> {
@@ -81,7 +83,7 @@ fn fly(
         parallel::threads(args.jobs),
         &is_stopped,
         |thread, entry| {
-            Pair { programme, firmwares, interrupted, keep: args.keep.as_deref() }.fly(entry, thread)
+            Pair { programme, builds, interrupted, keep: args.keep.as_deref() }.fly(entry, thread)
         },
         |flown: Result<LabFlight, AppError>, done| match flown {
             Ok(flight) => {
@@ -111,6 +113,14 @@ fn fly(
 /// Returns `true` if no side had a problem.
 fn is_flown(flight: &LabFlight) -> bool {
     std::iter::once(&flight.head).chain(&flight.base).all(|side| side.problem.is_none())
+}
+
+/// Returns a build, checked.
+fn build(args: &LabArgs, path: &Path, option: &str, notices: &mut Vec<String>) -> Result<Build, AppError> {
+    if path == Path::new(EMBEDDED) {
+        return Ok(Build::Embedded);
+    }
+    Ok(Build::Executable(Box::new(firmware(args, path, option, notices)?)))
 }
 
 /// Returns the firmware in a file, checked. It must run in simulated time. `option` names the file in messages.

@@ -66,7 +66,7 @@ pub(crate) fn from_args(
     if let Some(path) = &args.settings {
         boot_lines.push(BootLines { source: path.display().to_string(), text: input_file::read(path)? });
     }
-    Ok(FlightSetup {
+    let mut setup = FlightSetup {
         physics,
         world,
         home: args.home,
@@ -79,7 +79,11 @@ pub(crate) fn from_args(
         stick_inputs: Vec::new(),
         live: false,
         build: build_info(),
-    })
+    };
+    if let Some(profile) = args.profile {
+        setup.use_profile(profile, true);
+    }
+    Ok(setup)
 }
 
 /// Returns the start of a flight in real time for a session.

@@ -19,9 +19,11 @@ pub enum AltitudeReference {
     },
 }
 
-/// The duration of a HOLD that never ends, ds.
+/// The durations of a HOLD that never ends and of the shortest one, ds.
 const NO_END: u16 = 0;
-/// The longest duration, ds: 109 minutes.
+const SHORTEST: u16 = 1;
+/// The duration of a HOLD that ends at once, and the longest one, on firmware whose altitudes count from sea level, ds.
+const AT_ONCE: u16 = 0;
 const LONGEST: u16 = u16::MAX;
 
 /// The reason why altitudes cannot be converted. `Display` is a sentence.
@@ -54,13 +56,17 @@ impl AltitudeReference {
     }
 
     /// Converts a plan to the reference of the craft. Firmware whose altitudes count from sea level ends a HOLD of duration
-    /// 0 at once, so it gets the longest duration for a HOLD without an end.
+    /// 0 at once, so it gets the longest duration for a HOLD without an end, and 0 for the shortest one.
     ///
     /// # Errors
     /// Returns an error if the reference is unknown.
     pub fn plan_for_craft(self, plan: &FlightPlan) -> Result<CraftPlan, AltitudeError> {
         let mut plan = raised(plan.records(), to_cm(self.added_m()?));
-        self.replace_durations(&mut plan.records, NO_END, LONGEST);
+        self.replace_durations(&mut plan.records, |duration_ds| match duration_ds {
+            NO_END => LONGEST,
+            SHORTEST => AT_ONCE,
+            other => other,
+        });
         Ok(plan)
     }
 
@@ -70,18 +76,20 @@ impl AltitudeReference {
     /// Returns an error if the reference is unknown.
     pub fn plan_of_craft(self, plan: &CraftPlan) -> Result<FlightPlan, AltitudeError> {
         let CraftPlan { mut records } = raised(plan.records.clone(), -to_cm(self.added_m()?));
-        self.replace_durations(&mut records, LONGEST, NO_END);
+        self.replace_durations(&mut records, |duration_ds| match duration_ds {
+            LONGEST => NO_END,
+            AT_ONCE => SHORTEST,
+            other => other,
+        });
         Ok(FlightPlan::from_records(&records))
     }
 
-    fn replace_durations(self, records: &mut Records, from: u16, to: u16) {
+    fn replace_durations(self, records: &mut Records, replace: impl Fn(u16) -> u16) {
         if !matches!(self, Self::SeaLevel { .. }) {
             return;
         }
         for record in records.iter_mut().filter(|record| record.kind == WaypointType::Hold) {
-            if record.duration_ds == from {
-                record.duration_ds = to;
-            }
+            record.duration_ds = replace(record.duration_ds);
         }
     }
 }
@@ -107,7 +115,7 @@ fn raised(mut records: Records, by_cm: i32) -> CraftPlan {
 mod tests {
     use super::*;
     use crate::plan::quantity::Seconds;
-    use crate::plan::{Altitude, Waypoint, WaypointType};
+    use crate::plan::{Altitude, Waypoint, WaypointRecord, WaypointType};
 
     #[test]
     fn a_hold_without_an_end_stays_one_on_firmware_that_ends_a_hold_of_0() {
@@ -127,6 +135,16 @@ mod tests {
             assert_eq!(durations, duration_ds);
             assert_eq!(reference.plan_of_craft(&held).unwrap(), plan);
         }
+    }
+
+    #[test]
+    fn a_hold_that_ends_at_once_on_the_craft_is_not_shown_as_one_without_an_end() {
+        let hold = WaypointRecord { kind: WaypointType::Hold, ..WaypointRecord::default() };
+        let craft = CraftPlan { records: [hold].into_iter().collect() };
+        let reference = AltitudeReference::SeaLevel { home_m: Some(0.0) };
+        let plan = reference.plan_of_craft(&craft).unwrap();
+        assert_eq!(plan.waypoints[0].duration, Seconds::AT_ONCE);
+        assert_eq!(reference.plan_for_craft(&plan).unwrap(), craft);
     }
 
     #[test]

@@ -88,6 +88,9 @@ impl LegSpeed {
 pub struct Seconds(f64);
 
 impl Seconds {
+    /// The shortest duration that is not 0. A HOLD of 0 has no end, and one of this duration ends at once.
+    pub const AT_ONCE: Self = Self(0.1);
+
     /// Returns the nearest time that a record can hold.
     pub fn new(seconds: f64) -> Self {
         Self::from_ds((seconds * 10.0).round() as u16)

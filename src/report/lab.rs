@@ -1,12 +1,13 @@
 //! `lab`: a programme of flights on one or two builds of a firmware: which properties broke, and which measures changed.
 //!
 //! `properties` judges each flight, `measures` takes the numbers that all flights have in common. `finding` compares the
-//! numbers of both builds, flight by flight, and `broken` their failures. `text`, `markdown` and `json` give the answer, `values` the
-//! signals of a flight.
+//! numbers of both builds, flight by flight, and `broken` their failures. `text`, `markdown` and `json` give the answer,
+//! `likeness` the spreads of both, `values` the signals of a flight.
 
 mod broken;
 mod finding;
 mod json;
+mod likeness;
 mod markdown;
 mod measures;
 mod properties;
@@ -90,6 +91,11 @@ impl Lab {
     /// Returns the whole answer as Markdown, with the command that gives it again.
     pub fn markdown(&self, command: Option<&str>) -> String {
         markdown::markdown(self, command)
+    }
+
+    /// Returns the likeness of both builds as a page in Markdown, with the command that prints it again.
+    pub fn likeness(&self, command: Option<&str>) -> String {
+        likeness::page(self, command)
     }
 
     /// Returns the whole answer and all flights as JSON.

@@ -178,6 +178,7 @@ pub(super) fn cause(reason: TransitionReason, to: NavState) -> &'static str {
         }
         TransitionReason::GivenUp(AbortReason::Stalled) => "no progress",
         TransitionReason::GivenUp(AbortReason::Flyaway) => "moving away from the waypoint",
+        TransitionReason::GivenUp(AbortReason::MagFault) => "the course does not fit the heading",
         TransitionReason::ReturnHome
         | TransitionReason::Disarm
         | TransitionReason::Climb

@@ -74,11 +74,23 @@ pub struct Case {
     pub expectations: Vec<Expectation>,
 }
 
+impl Scenario {
+    /// Flies every case by the laws of a profile.
+    pub fn use_profile(&mut self, profile: FirmwareProfile) {
+        self.cases.iter_mut().for_each(|case| case.use_profile(profile));
+    }
+}
+
 impl Case {
     /// Returns the command lines that the scenario itself gives, without those of settings files.
     pub fn own_lines(&self) -> impl Iterator<Item = &str> {
         let own = self.setup.boot_lines.iter().filter(|lines| OWN_LINES.contains(&lines.source.as_str()));
         own.flat_map(|lines| lines.text.lines())
+    }
+
+    /// Flies by the laws of a profile.
+    pub fn use_profile(&mut self, profile: FirmwareProfile) {
+        self.setup.use_profile(profile, false);
     }
 
     /// Returns the start of the flight in the given air.

@@ -58,6 +58,11 @@ pub enum FirmwareNotice {
         /// The greatest value in current firmware.
         max: i64,
     },
+    /// A setting got a value that acts in the profile `master` only.
+    #[strum(
+        to_string = "Settings of ap_nav_ act in the profile master only: --profile master, or set ap_profile = MASTER, flies by it."
+    )]
+    ActsInMaster,
     /// A crash was detected.
     #[strum(to_string = "Crash detected: the craft is levelled, the sticks rest.")]
     CrashDetected,

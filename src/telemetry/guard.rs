@@ -77,6 +77,14 @@ guards! {
         "How far the commanded throttle is below the hover throttle: the ground carries the rest.";
     TouchdownTime "touchdown time" Seconds
         "Time for which all other guards of the touchdown have held. At the limit the craft disarms.";
+    Gate "gate" Metres "Distance to a waypoint between two legs. It is reached within the gate of its corner.";
+    CornerSpeed "corner speed" MetresPerSecond
+        "Ground speed, against the speed through the corner ahead. The carrot slows down to it.";
+    Carrot "carrot" Metres "Distance of the carrot ahead of the craft on the leg, against the longest one.";
+    Overspeed "overspeed hold" MetresPerSecond
+        "Ground speed above that of the leg. Above the limit the carrot waits for the craft.";
+    WrongHeading "wrong heading" Seconds
+        "Time for which the course was far off a nose that points at the target. The mission is given up beyond the limit.";
     Stationary "stationary time" Seconds
         "Time for which the craft has not moved although it is commanded to descend.";
 }

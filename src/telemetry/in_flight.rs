@@ -37,6 +37,8 @@ pub enum InFlightRefusal {
     Parked,
     /// No hold by command is active.
     NotHeld,
+    /// The navigator of the profile `master` has no such command.
+    NotInProfile,
     /// The flight controller is remote and has no such commands.
     Remote,
 }
@@ -63,6 +65,9 @@ impl InFlightRefusal {
                 "The plan is complete and the craft keeps its place: go to a waypoint.".to_owned()
             }
             Self::NotHeld => "Nothing is held by command, so there is nothing to resume.".to_owned(),
+            Self::NotInProfile => {
+                "The profile master has no such command: it can only go to a waypoint.".to_owned()
+            }
             Self::Remote => "The flight controller is another program, which has no such command.".to_owned(),
         }
     }

@@ -83,6 +83,8 @@ pub enum AbortReason {
     GpsLost,
     /// The plan was cleared while it was flown.
     NoPlan,
+    /// The craft did not fly where its nose pointed: the heading is wrong.
+    MagFault,
 }
 
 impl Refusal {
@@ -127,6 +129,9 @@ impl Refusal {
                 }
                 AbortReason::GpsLost => "The GPS fix was lost: the mission resumes 2 s after it is back.".into(),
                 AbortReason::NoPlan => "The plan was cleared in flight: upload a plan.".into(),
+                AbortReason::MagFault => {
+                    "The mission was given up because the course did not fit the heading: check the compass.".into()
+                }
             },
         }
     }

@@ -11,8 +11,8 @@ use crate::plan::estimate::{Assumptions, ReturnFlight, TouchdownThrottle};
 use crate::plan::{FlightPlan, Waypoint};
 use crate::signals::{PerMotor, RC_CHANNELS, RcSource, SimTime};
 use crate::telemetry::{
-    ArmingFlags, FailsafeAhead, FaultKind, FaultValue, Mode, ModeBox, ModeFlags, NavTelemetry, Turbulence,
-    switch,
+    ArmingFlags, FailsafeAhead, FaultKind, FaultValue, FirmwareProfile, Mode, ModeBox, ModeFlags,
+    NavTelemetry, Turbulence, switch,
 };
 
 /// The vehicle at an instant, as displays show it.
@@ -280,6 +280,8 @@ impl ModeRange {
 #[derive(Debug, Clone, Copy, PartialEq, Default, serde::Serialize, serde::Deserialize)]
 #[serde(default)]
 pub struct SettingsView {
+    /// The laws of the autopilot.
+    pub profile: FirmwareProfile,
     /// `ap_waypoint_arrival_radius`, m.
     pub arrival_radius_m: f64,
     /// `ap_waypoint_hold_radius`, m.

@@ -252,13 +252,14 @@ impl FlightController {
         }
     }
 
-    /// Returns the kind of the firmware; `None` if it has not reported its settings. The reference of the altitudes
-    /// tells the kinds apart.
+    /// Returns the profile of an embedded firmware, or the kind of a remote one; `None` if it has not reported its
+    /// settings. The reference of its altitudes tells the kinds apart.
     pub fn profile(&self) -> Option<FirmwareProfile> {
-        match self.altitude_reference() {
-            AltitudeReference::Unreported => None,
-            AltitudeReference::Home => Some(FirmwareProfile::Guide),
-            AltitudeReference::SeaLevel { .. } => Some(FirmwareProfile::Master),
+        match (self, self.altitude_reference()) {
+            (Self::Embedded(embedded), _) => Some(embedded.firmware.parameters().nav.profile),
+            (_, AltitudeReference::Unreported) => None,
+            (_, AltitudeReference::Home) => Some(FirmwareProfile::Guide),
+            (_, AltitudeReference::SeaLevel { .. }) => Some(FirmwareProfile::Master),
         }
     }
 

@@ -5,6 +5,7 @@
 mod docs;
 mod faults;
 mod language;
+mod master;
 mod repeat;
 mod rig;
 mod texts;

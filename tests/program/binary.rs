@@ -38,6 +38,7 @@ mod options;
 mod plain;
 mod plans;
 mod portable;
+mod profile;
 #[cfg(unix)]
 pub(crate) mod pty;
 #[cfg(unix)]

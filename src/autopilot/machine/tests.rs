@@ -20,6 +20,7 @@ impl Outcome {
             Self::Abort(AbortReason::NoPlan) => "mission off, reason NO_PLAN",
             Self::Abort(AbortReason::Stalled) => "mission off until the switch is cycled, reason STALLED",
             Self::Abort(AbortReason::Flyaway) => "mission off until the switch is cycled, reason FLYAWAY",
+            Self::Abort(AbortReason::MagFault) => "mission off until the switch is cycled, reason MAG_FAULT",
             Self::LandHere | Self::Fence(FenceAction::Land) => "active plan: LAND here",
             Self::Fence(FenceAction::Rth) => "active plan: FLYOVER home, LAND home",
             Self::Climbed => "climb over, the leg starts here",

@@ -5,6 +5,8 @@
 pub struct Rescue {
     /// Altitude of the return, m above home, if it is higher than the craft.
     pub altitude_m: f64,
+    /// The climb before the way home if home is nearer than the least distance of a rescue, m.
+    pub near_climb_m: Option<f64>,
     /// Climb rate, m/s.
     pub climb_mps: f64,
     /// Ground speed, m/s.

@@ -2,9 +2,7 @@
 
 use strum::VariantNames as _;
 
-use crate::telemetry::RxLossPolicy;
-
-use crate::telemetry::FenceAction;
+use crate::telemetry::{FenceAction, FirmwareProfile, RxLossPolicy};
 
 /// The direction of the nose while the autopilot flies.
 #[derive(
@@ -73,3 +71,10 @@ macro_rules! enumerations {
     )*};
 }
 enumerations!(YawMode RxLossPolicy FenceAction);
+
+impl Value for FirmwareProfile {
+    const WORDS: &'static [&'static str] = &["GUIDE", "MASTER"];
+    fn from_number(number: i64) -> Self {
+        if number == 0 { Self::Guide } else { Self::Master }
+    }
+}

@@ -21,6 +21,7 @@ fn row(
     now: &Configuration,
     saved: Option<&Configuration>,
 ) -> CraftSetting {
+    let setting = &now.settings.resolved(setting);
     let instance = now.settings.active(setting.scope);
     let shown = |configuration: &Configuration| {
         configuration.settings.value(setting, instance).map(|value| setting.display(value))

@@ -41,6 +41,8 @@ impl Settings {
             }
             twin.run_cli(&mut Interpreter::default(), &format!("set {name} = {value}"));
         }
+        let profile = if self.knows_autopilot && !self.waypoints_from_home { "MASTER" } else { "GUIDE" };
+        twin.run_cli(&mut Interpreter::default(), &format!("set ap_profile = {profile}"));
     }
 
     pub(super) fn view(&self) -> Option<SettingsView> {
@@ -65,6 +67,7 @@ impl Settings {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::telemetry::FirmwareProfile;
 
     #[test]
     fn what_was_read_is_shown_and_the_rest_is_as_usual() {
@@ -78,7 +81,9 @@ mod tests {
         let view = read.view().unwrap();
         assert!((view.arrival_radius_m - 7.0).abs() < 1e-9 && !read.waypoints_from_home());
         assert!(read.report_altitude_reference());
+        assert_eq!(view.profile, FirmwareProfile::Master);
         read.read("ap_velocity_p = 30\r\n");
         assert!(read.waypoints_from_home());
+        assert_eq!(read.view().unwrap().profile, FirmwareProfile::Guide);
     }
 }

@@ -1,6 +1,6 @@
 //! The command lines that configure a flight controller.
 
-use crate::fc::master_settings::replacement;
+use crate::flight::setup::replacement;
 
 /// The prefix of a setting's line.
 const SET: &str = "set ";

@@ -1,6 +1,6 @@
 //! The report on the configuration of a flight controller.
 
-use crate::fc::master_settings::replaced_reported;
+use crate::flight::setup::replaced_reported;
 
 /// The result of the configuration.
 #[derive(Debug, Clone, PartialEq, Eq, Default)]

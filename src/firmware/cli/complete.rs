@@ -131,6 +131,7 @@ pub fn hint(line: &str, settings: Option<&Settings>) -> Option<String> {
 }
 
 fn setting_hint(setting: &Setting, settings: Option<&Settings>) -> String {
+    let setting = &settings.map_or(*setting, |settings| settings.resolved(setting));
     let value = settings.and_then(|settings| settings.active_value(setting));
     let now = value.map_or_else(String::new, |value| format!(" = {}", setting.display(value)));
     let default = setting.display(&setting.default_value());
@@ -143,6 +144,7 @@ fn setting_hint(setting: &Setting, settings: Option<&Settings>) -> String {
     };
     let effect = match setting.role {
         Role::Carry => " No effect here.",
+        Role::Only(_) => " No effect in the other profile.",
         Role::Live if needs_restart(setting.name) => " Works after save.",
         Role::Live => "",
     };

@@ -6,7 +6,7 @@ use super::super::config::{Configuration, Feature, MixRow, RxFailTable};
 use super::super::settings::{SETTINGS, Scope, Setting};
 use super::session::Session;
 use super::{craft, modes, receiver, serial, status};
-use crate::plan::plan_lines;
+use crate::telemetry::FirmwareProfile;
 
 /// The part to print.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -241,7 +241,11 @@ fn serial_lines(configuration: &Configuration, style: Style, fresh: &Configurati
 }
 
 fn plan(session: &mut Session<'_>, style: Style) {
-    let lines: Vec<String> = plan_lines(&session.configuration.plan).collect();
+    let mut lines = super::waypoint::lines(session);
+    if session.configuration.settings.profile() == FirmwareProfile::Master {
+        // The profile decides about the reference of the altitudes, so it must be set before them.
+        lines.insert(0, "set ap_profile = MASTER".to_owned());
+    }
     if !style.changes_only {
         section(session, "waypoint", &lines);
     } else if !session.configuration.plan.waypoints.is_empty() {
@@ -259,7 +263,7 @@ fn setting_lines(session: &Session<'_>, style: Style, scope: Scope, instance: u8
     let fresh_ports = super::super::config::SerialTable::default() == session.configuration.serial;
     let line = |setting: &Setting| {
         let now = setting.display(settings.value(setting, instance)?);
-        let default = setting.display(&setting.default_value());
+        let default = setting.display(&settings.resolved(setting).default_value());
         Some((format!("set {} = {now}", setting.name), format!("set {} = {default}", setting.name)))
     };
     let mut lines = Vec::new();

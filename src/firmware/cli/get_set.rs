@@ -3,7 +3,8 @@
 use crate::autopilot::Params;
 
 use super::super::settings::{
-    AssignError, Kind, Role, SETTINGS, Scope, Setting, beyond_current_firmware, find, foreign_name,
+    AssignError, Kind, Role, SETTINGS, Scope, Setting, acts_in_master, beyond_current_firmware, find,
+    foreign_name,
 };
 use super::foreign::keep_setting;
 use super::session::Session;
@@ -53,6 +54,7 @@ fn kept_values(session: &Session<'_>, wanted: &str) -> Vec<(String, String)> {
 
 fn block(session: &mut Session<'_>, setting: &Setting) {
     let settings = &session.configuration.settings;
+    let setting = &settings.resolved(setting);
     let active = settings.active(setting.scope);
     let changed = settings.is_changed(setting, active);
     let value = current(session, setting);
@@ -95,7 +97,9 @@ fn list(session: &mut Session<'_>, with_ranges: bool) {
     for setting in &SETTINGS {
         let value = current(session, setting);
         session.raw(format_args!("{} = {value}", setting.name));
-        if let (true, Kind::Number { min, max, .. }) = (with_ranges, setting.kind) {
+        if let (true, Kind::Number { min, max, .. }) =
+            (with_ranges, session.configuration.settings.resolved(setting).kind)
+        {
             session.raw(format_args!(" {min} {max}"));
         }
         session.line("");
@@ -114,14 +118,16 @@ fn assign(session: &mut Session<'_>, name: &str, value: &str, typed: &str) {
         Ok(()) => {
             let value = current(session, setting);
             session.raw(format_args!("{} set to {value}", setting.name));
+            let profile = session.configuration.settings.profile();
             session.reply.notices.extend(beyond_current_firmware(setting, &value));
+            session.reply.notices.extend(acts_in_master(setting, profile, &value));
         }
         Err(error) => {
             if let AssignError::TextTooLong { max } = error {
                 session.line(format_args!("STRING MUST BE 1-{max} CHARACTERS OR '-' FOR EMPTY"));
             }
             session.error("INVALID VALUE");
-            let range = setting.range_line();
+            let range = session.configuration.settings.resolved(setting).range_line();
             if !range.is_empty() {
                 session.line(range);
             }

@@ -29,6 +29,8 @@ pub struct CliFacts {
     pub tasks: Vec<TaskFacts>,
     pub smoothing: SmoothingFacts,
     pub nav: NavFacts,
+    /// The altitude of the flying site above mean sea level, m.
+    pub site_alt_m: f64,
 }
 
 impl CliFacts {
@@ -66,6 +68,7 @@ impl CliFacts {
                 active_plan: firmware.active_plan().cloned(),
                 refusal: firmware.navigation.last_refusal,
             },
+            site_alt_m: firmware.setup.options.site_alt_m,
         }
     }
 }

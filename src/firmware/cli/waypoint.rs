@@ -7,8 +7,11 @@ use strum::IntoEnumIterator as _;
 use super::CliAction;
 use super::session::{Session, integer};
 use crate::geo::{Degrees7, LatLon};
-use crate::plan::{HoldPattern, MAX_WAYPOINTS, Records, WaypointRecord, WaypointType, plan_lines};
-use crate::telemetry::{NavState, Refusal};
+use crate::plan::{
+    AltitudeReference, CraftPlan, FlightPlan, HoldPattern, MAX_WAYPOINTS, Records, Waypoint, WaypointRecord,
+    WaypointType, record_lines,
+};
+use crate::telemetry::{FirmwareProfile, NavState, Refusal};
 
 /// `waypoint [list|status|insert|update|remove|clear]`.
 pub(super) fn waypoint(session: &mut Session<'_>, rest: &str) {
@@ -41,15 +44,39 @@ pub(super) fn store(session: &mut Session<'_>, records: &Records) {
             session.error(text);
             return;
         }
-        put(session, Edit::Insert, index, *record);
+        put(session, Edit::Insert, index, (*record).into());
     }
 }
 
 fn list(session: &mut Session<'_>) {
-    let lines: Vec<String> = plan_lines(&session.configuration.plan).collect();
-    for line in lines {
+    for line in lines(session) {
         session.line(line);
     }
+}
+
+/// Returns the lines that rebuild the stored plan, in the reference of the profile.
+pub(super) fn lines(session: &Session<'_>) -> Vec<String> {
+    record_lines(for_craft(session, &session.configuration.plan)).collect()
+}
+
+/// Returns the reference of waypoint altitudes in commands: that of the profile.
+fn reference(session: &Session<'_>) -> AltitudeReference {
+    match session.configuration.settings.profile() {
+        FirmwareProfile::Guide => AltitudeReference::Home,
+        FirmwareProfile::Master => AltitudeReference::SeaLevel { home_m: Some(session.facts.site_alt_m) },
+    }
+}
+
+/// Returns the records of a plan in the reference of the profile.
+fn for_craft(session: &Session<'_>, plan: &FlightPlan) -> Records {
+    reference(session).plan_for_craft(plan).map(|plan| plan.records).unwrap_or_default()
+}
+
+/// Returns the waypoint that a record in the reference of the profile describes.
+fn of_craft(session: &Session<'_>, record: WaypointRecord) -> Waypoint {
+    let plan = CraftPlan { records: [record].into_iter().collect() };
+    let plan = reference(session).plan_of_craft(&plan).unwrap_or_default();
+    plan.waypoints.first().copied().unwrap_or_default()
 }
 
 /// Formats centimetres as metres with two decimals.
@@ -95,25 +122,29 @@ fn edit(session: &mut Session<'_>, arguments: &[&str], edit: Edit) {
             return;
         }
     };
-    put(session, edit, index, record);
+    let waypoint = of_craft(session, record);
+    put(session, edit, index, waypoint);
 }
 
 /// Stores a waypoint. There is room for it, and the index is in range.
-fn put(session: &mut Session<'_>, edit: Edit, index: usize, record: WaypointRecord) {
+fn put(session: &mut Session<'_>, edit: Edit, index: usize, waypoint: Waypoint) {
     let waypoints = &mut session.configuration.plan.waypoints;
     let word = match edit {
         Edit::Insert => {
-            waypoints.insert(index, record.into());
+            waypoints.insert(index, waypoint);
             "insert"
         }
         Edit::Update => {
             if let Some(place) = waypoints.get_mut(index) {
-                *place = record.into();
+                *place = waypoint;
             }
             "update"
         }
     };
-    session.line(format_args!("waypoint {word} {index} {}", record.values(metres(record.alt_cm))));
+    let plan = FlightPlan { waypoints: [waypoint].into_iter().collect() };
+    if let Some(record) = for_craft(session, &plan).first() {
+        session.line(format_args!("waypoint {word} {index} {}", record.values(metres(record.alt_cm))));
+    }
     session.act(CliAction::PlanChanged);
 }
 
@@ -201,7 +232,7 @@ fn status(session: &mut Session<'_>) {
     if !plan.waypoints.is_empty() {
         session.raw("\n");
         session.line("Configured waypoints:");
-        for (at, record) in plan.records().iter().enumerate() {
+        for (at, record) in for_craft(session, &plan).iter().enumerate() {
             session.line(format_args!(
                 "  [{at}] {} {} {} {}",
                 Degrees7(record.position.lat_e7),
@@ -214,8 +245,10 @@ fn status(session: &mut Session<'_>) {
     session.raw("\n");
     session.line("Runtime status:");
     let nav = &facts.nav.telemetry;
+    let profile = session.configuration.settings.profile();
+    let state = |is_aborted| profile.state_word(nav.state, is_aborted);
     if let (NavState::Idle, Some(Refusal::Aborted(reason))) = (nav.state, nav.refusal) {
-        session.line(format_args!("  state: {}", nav.state));
+        session.line(format_args!("  state: {}", state(true)));
         session.line(format_args!("  abort reason: {}", reason.to_string().replace('_', " ")));
         return;
     }
@@ -226,7 +259,7 @@ fn status(session: &mut Session<'_>) {
         }
         return;
     }
-    session.line(format_args!("  state: {}", nav.state));
+    session.line(format_args!("  state: {}", state(false)));
     session.line(format_args!("  current waypoint: {}/{}", u16::from(nav.wp) + 1, nav.count));
     if nav.state == NavState::Complete {
         return;

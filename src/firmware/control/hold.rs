@@ -3,6 +3,8 @@
 //! Runs a hundred times a second while the navigator does not fly. A controller that no hold uses tracks the flight, so
 //! that wind and hover throttle are known when a hold or the navigator takes over.
 
+use nalgebra::Vector2;
+
 use crate::autopilot::Params;
 use crate::autopilot::control::FlightControllers;
 use crate::autopilot::io::NavInputs;
@@ -64,6 +66,20 @@ impl HoldTuning {
 }
 
 impl HoldTuning {
+    /// Returns the climb rate that the throttle stick (µs) asks of ALTHOLD with this hover throttle (µs), m/s.
+    pub fn climb_mps(&self, stick_us: f64, hover_us: f64, params: &Params) -> f64 {
+        altitude::climb_share(stick_us, hover_us, self) * params.climb_rate_mps()
+    }
+
+    /// Returns the tilt that the roll and pitch sticks ask for in a position hold, with this limit (rad); `None` while both
+    /// rest.
+    pub fn stick_tilt(&self, now: &NavInputs, limit_rad: f64) -> Option<TiltDemand> {
+        let share = |stick| position::share(stick, self.stick_deadband);
+        let stick = Vector2::new(share(now.stick_pitch), share(now.stick_roll));
+        let tilt = stick.cap_magnitude(1.0) * limit_rad;
+        (stick != Vector2::zeros()).then_some(TiltDemand { pitch_down_rad: tilt.x, roll_rad: tilt.y })
+    }
+
     /// Returns the throttle stick (µs) that makes a craft with this hover throttle (µs) sink at a rate (m/s) in
     /// ALTHOLD; `None` if no stick does.
     pub fn sink_stick_us(&self, rate_mps: f64, hover_us: f64, params: &Params) -> Option<f64> {

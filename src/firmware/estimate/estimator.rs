@@ -100,11 +100,9 @@ pub struct Estimator {
 impl Estimator {
     /// Creates an estimator at boot.
     pub fn new(options: EstimatorOptions, tuning: EstimatorTuning) -> Self {
-        let mut horizontal = Horizontal::new();
-        horizontal.set_accel_trust(tuning.accel_trust);
-        Self {
+        let mut estimator = Self {
             options,
-            tuning,
+            tuning: tuning.clone(),
             schedule: Schedule::default(),
             estimate: Estimate::default(),
             time: None,
@@ -132,7 +130,7 @@ impl Estimator {
             since_mag_s: 0.0,
             since_mag_sample_s: f64::INFINITY,
             gps: GpsMonitor::default(),
-            horizontal,
+            horizontal: Horizontal::new(),
             vertical: Vertical::new(),
             course: CourseComparison::new(),
             compass: CompassCheck::default(),
@@ -142,12 +140,15 @@ impl Estimator {
             solution_at: SimTime::ZERO,
             shown_alt: Pt2::default(),
             shown_climb: Pt2::default(),
-        }
+        };
+        estimator.set_tuning(tuning);
+        estimator
     }
 
     /// Changes the tuning. Not for use within a step.
     pub fn set_tuning(&mut self, tuning: EstimatorTuning) {
-        self.horizontal.set_accel_trust(tuning.accel_trust);
+        self.horizontal.set_law(tuning.is_plain, tuning.accel_trust);
+        self.vertical.set_law(tuning.is_plain);
         self.tuning = tuning;
     }
 
@@ -155,8 +156,7 @@ impl Estimator {
         &self.estimate
     }
 
-    /// Sets altitude zero here and starts the local frame at `home`, or at the present position if no home could be
-    /// set. Called when the craft is armed.
+    /// Sets altitude zero and starts the local frame at `home`, or here if there is none. Called when the craft is armed.
     pub fn on_arm(&mut self, home: Option<LatLon>) {
         self.armed = true;
         self.was_aided = false;
@@ -193,14 +193,12 @@ impl Estimator {
         self.estimate.calibrating = true;
     }
 
-    /// Returns the result of a magnetometer calibration that has just ended, for `mag_calibration`. Returns it only
-    /// once.
+    /// Returns once the result of a magnetometer calibration that has just ended, for `mag_calibration`.
     pub fn take_mag_calibration(&mut self) -> Option<Result<[i64; 3], NotTurned>> {
         self.mag_result.take()
     }
 
-    /// Returns the result of an accelerometer calibration that has just ended, for the first three elements of
-    /// `acc_calibration`. Returns it only once.
+    /// Returns once the result of an accelerometer calibration that has just ended, for the begin of `acc_calibration`.
     pub fn take_acc_calibration(&mut self) -> Option<[i64; 3]> {
         self.acc_result.take()
     }
@@ -255,7 +253,7 @@ impl Estimator {
         self.force_sum += force;
         self.force_samples += 1.0;
         self.estimate.force_flu = force;
-        let rate = rate - self.gyro.bias;
+        let rate = if self.tuning.is_plain { rate } else { rate - self.gyro.bias };
         self.estimate.rates = Rates::from_flu(&(rate + self.attitude.rate_correction()));
         rate
     }
@@ -451,7 +449,8 @@ impl Estimator {
             self.force_filter[2].apply(force.z, gain),
         );
         let heading_valid = self.estimate.heading_valid;
-        let is_aided = self.armed && heading_valid && self.horizontal.is_settled();
+        let is_plain = self.tuning.is_plain;
+        let is_aided = !is_plain && self.armed && heading_valid && self.horizontal.is_settled();
         self.was_aided |= is_aided;
         let (missing, gains) = if is_aided {
             let missing = self.horizontal.accel_error();
@@ -462,7 +461,7 @@ impl Estimator {
         } else {
             let factor = match (self.armed, self.was_aided) {
                 (false, _) => PARKED_FACTOR,
-                (true, false) if heading_valid => 1.0,
+                (true, false) if heading_valid || is_plain => 1.0,
                 (true, _) => ORPHANED_FACTOR,
             };
             let gains = VerticalGains { kp: self.tuning.kp * factor, ki: self.tuning.ki };
@@ -470,7 +469,9 @@ impl Estimator {
             (missing, gains)
         };
         let explained = self.attitude.correct_tilt(&filtered, &missing, &gains, dt);
-        self.horizontal.explain(Vector2::new(explained.y, explained.x));
+        if !is_plain {
+            self.horizontal.explain(Vector2::new(explained.y, explained.x));
+        }
     }
 
     fn show(&mut self, dt: f64) {

@@ -11,13 +11,33 @@ use crate::signals::GpsSample;
 
 /// The nominal step, s.
 const STEP_S: f64 = 0.01;
-/// The white error of the acceleration, (m/s²)²/Hz, with `ap_position_a` at its default.
-const ACCEL_NOISE: f64 = 4e-4;
-/// The random walk of its slow error, tilt and accelerometer together, (m/s³)²/Hz.
-const DRIFT_NOISE: f64 = 2.5e-3;
-/// The standard deviations of a good solution, m and m/s.
-const POSITION_SIGMA: f64 = 0.3;
-const VELOCITY_SIGMA: f64 = 0.07;
+/// The assumed errors: of the acceleration with `ap_position_a` at its default, and of a good solution.
+#[derive(Debug, Clone, Copy, PartialEq)]
+struct Errors {
+    /// The white error of the acceleration, and the random walk of its slow error, tilt and accelerometer together.
+    noise: ProcessNoise,
+    /// The standard deviation of the slow error at the begin, m/s².
+    accel_sigma: f64,
+    /// The standard deviations of a good solution, m and m/s.
+    position_sigma: f64,
+    velocity_sigma: f64,
+}
+
+const USUAL: Errors = Errors {
+    noise: ProcessNoise { accel: 4e-4, drift: 2.5e-3 },
+    accel_sigma: 0.3,
+    position_sigma: 0.3,
+    velocity_sigma: 0.07,
+};
+
+/// Those of master. Its SITL target takes the dilution of its receiver for unknown, which is a tenth of the usual weight.
+const PLAIN: Errors = Errors {
+    noise: ProcessNoise { accel: 0.05, drift: 0.0 },
+    accel_sigma: 0.0,
+    position_sigma: 2.236,
+    velocity_sigma: 1.0,
+};
+
 /// An innovation is suspicious if it exceeds this many standard deviations plus this size (m, m/s).
 const GATE_SIGMAS: f64 = 5.0;
 const POSITION_GATE: f64 = 2.0;
@@ -33,7 +53,7 @@ const VALID_S: f64 = 2.0;
 #[derive(Debug, Clone, PartialEq)]
 pub(super) struct Horizontal {
     covariance: KalmanCovariance,
-    noise: ProcessNoise,
+    errors: Errors,
     north: Axis,
     east: Axis,
     origin: Option<LatLon>,
@@ -42,11 +62,17 @@ pub(super) struct Horizontal {
     since_solution_s: f64,
 }
 
+impl Errors {
+    fn covariance(&self) -> KalmanCovariance {
+        KalmanCovariance::new(self.position_sigma, self.velocity_sigma, self.accel_sigma)
+    }
+}
+
 impl Horizontal {
     pub(super) fn new() -> Self {
         Self {
-            covariance: KalmanCovariance::new(POSITION_SIGMA, VELOCITY_SIGMA, 0.3),
-            noise: ProcessNoise { accel: ACCEL_NOISE, drift: DRIFT_NOISE },
+            covariance: USUAL.covariance(),
+            errors: USUAL,
             north: Axis::new(),
             east: Axis::new(),
             origin: None,
@@ -56,9 +82,14 @@ impl Horizontal {
         }
     }
 
-    /// Scales the trust in the accelerometer: 30 is neutral, more trusts it more.
-    pub(super) fn set_accel_trust(&mut self, setting: f64) {
-        self.noise.accel = ACCEL_NOISE * 30.0 / setting.max(1.0);
+    /// Chooses the assumed errors, and scales the trust in the accelerometer: 30 is neutral, more trusts it more.
+    pub(super) fn set_law(&mut self, is_plain: bool, accel_trust: f64) {
+        let was_plain = self.errors.accel_sigma == 0.0;
+        self.errors = if is_plain { PLAIN } else { USUAL };
+        self.errors.noise.accel *= 30.0 / accel_trust.max(1.0);
+        if is_plain != was_plain {
+            self.forget_accel_error();
+        }
     }
 
     pub(super) fn origin(&self) -> Option<LatLon> {
@@ -87,7 +118,7 @@ impl Horizontal {
     /// Clears the acceleration error, which came from a wrong heading that is now known.
     pub(super) fn forget_accel_error(&mut self) {
         (self.north.accel_error, self.east.accel_error) = (0.0, 0.0);
-        self.covariance = KalmanCovariance::new(POSITION_SIGMA, VELOCITY_SIGMA, 0.3);
+        self.covariance = self.errors.covariance();
     }
 
     /// Returns `true` if position and velocity are valid.
@@ -117,7 +148,7 @@ impl Horizontal {
             self.solutions = 0;
             return;
         }
-        self.covariance.predict(dt, &self.noise);
+        self.covariance.predict(dt, &self.errors.noise);
         self.north.predict(accel.x, dt);
         self.east.predict(accel.y, dt);
     }
@@ -136,7 +167,8 @@ impl Horizontal {
         let dilution = Dilution::of(sample);
         let age = (age_s / STEP_S).round().max(0.0) as usize;
         let mut covariance = self.covariance;
-        let by_velocity = covariance.measure_velocity(math::powi(VELOCITY_SIGMA * dilution.speed, 2));
+        let by_velocity =
+            covariance.measure_velocity(math::powi(self.errors.velocity_sigma * dilution.speed, 2));
         let (p, v) = self.past(age);
         let velocity_error = velocity - v;
         if exceeds(velocity_error, &by_velocity, VELOCITY_GATE) {
@@ -147,7 +179,8 @@ impl Horizontal {
         }
         self.correct(&by_velocity, velocity_error, age);
         let before = covariance;
-        let by_position = covariance.measure_position(math::powi(POSITION_SIGMA * dilution.horizontal, 2));
+        let by_position =
+            covariance.measure_position(math::powi(self.errors.position_sigma * dilution.horizontal, 2));
         let position_error = position - p;
         if exceeds(position_error, &by_position, POSITION_GATE) {
             // A plausible velocity with a displaced position: after a while the new position is accepted.
@@ -190,7 +223,7 @@ impl Horizontal {
         let now = position + velocity * age_s;
         self.north.reset(now.x, velocity.x, STEP_S);
         self.east.reset(now.y, velocity.y, STEP_S);
-        self.covariance = KalmanCovariance::new(POSITION_SIGMA, VELOCITY_SIGMA, 0.3);
+        self.covariance = self.errors.covariance();
         (self.suspicious, self.solutions) = (0, 0);
     }
 }

@@ -3,6 +3,7 @@
 use super::calibration::{acc_offset, mag_offset};
 use super::vertical::AltitudeSource;
 use crate::firmware::settings::Settings;
+use crate::telemetry::FirmwareProfile;
 use nalgebra::Vector3;
 
 /// The source of the attitude.
@@ -45,6 +46,9 @@ impl Default for EstimatorOptions {
 #[derive(Debug, Clone, PartialEq)]
 #[doc(hidden)]
 pub struct EstimatorTuning {
+    /// `true` for the estimator of master: Kalman filters without a term for the acceleration error, a tilt that follows
+    /// the accelerometer also while the craft speeds up, and, as in its SITL target, no zero of the gyro.
+    pub is_plain: bool,
     /// The gain of the correction towards the vertical, rad/s per unit of the sine of the error.
     pub kp: f64,
     /// The integral gain of that correction, rad/s² per unit.
@@ -94,6 +98,7 @@ impl EstimatorTuning {
     pub fn from_settings(settings: &Settings) -> Self {
         let number = |name: &str| settings.number(name) as f64;
         Self {
+            is_plain: settings.profile() == FirmwareProfile::Master,
             kp: number("imu_dcm_kp") * 1e-4,
             ki: number("imu_dcm_ki") * 1e-4,
             acc_lpf_hz: number("acc_lpf_hz"),

@@ -8,20 +8,40 @@ use crate::signals::GpsSample;
 
 /// The nominal step, s.
 const STEP_S: f64 = 0.01;
-/// The white error of the acceleration, (m/s²)²/Hz, and the random walk of its slow error, (m/s³)²/Hz.
-const NOISE: ProcessNoise = ProcessNoise { accel: 4e-4, drift: 4e-4 };
-/// The standard deviation of a barometer sample at full preference, m (1 Pa is 8 cm).
-const BARO_SIGMA: f64 = 0.1;
+/// The assumed errors.
+#[derive(Debug, Clone, Copy, PartialEq)]
+struct Errors {
+    /// The white error of the acceleration, and the random walk of its slow error.
+    noise: ProcessNoise,
+    /// The standard deviation of a barometer sample at full preference, m (1 Pa is 8 cm).
+    baro_sigma: f64,
+    /// The standard deviations of the receiver's altitude beside a barometer, m, and of its climb rate, m/s.
+    gps_beside_sigma: f64,
+    climb_sigma: f64,
+}
+
+const USUAL: Errors = Errors {
+    noise: ProcessNoise { accel: 4e-4, drift: 4e-4 },
+    baro_sigma: 0.1,
+    gps_beside_sigma: 4.0,
+    climb_sigma: 0.08,
+};
+
+/// Those of master, whose SITL target takes the dilution of its receiver for unknown. It does not use the climb rate.
+const PLAIN: Errors = Errors {
+    noise: ProcessNoise { accel: 0.02, drift: 0.0 },
+    baro_sigma: 0.387,
+    gps_beside_sigma: 42.4,
+    climb_sigma: 1e6,
+};
 /// The steps between the pressure and its sample: halfway between an ideal sensor and a filtered one.
 const BARO_AGE: usize = 1;
 /// The error beyond five standard deviations at which a sample counts as a spike and is ignored, m.
 const BARO_GATE: f64 = 1.0;
 /// The number of spikes in a row after which a sample is accepted.
 const PATIENCE: u8 = 10;
-/// The standard deviations of the receiver's altitude (m; alone, and with a barometer) and climb rate (m/s).
+/// The standard deviation of the receiver's altitude without a barometer, m.
 const GPS_ALONE_SIGMA: f64 = 0.6;
-const GPS_BESIDE_SIGMA: f64 = 4.0;
-const CLIMB_SIGMA: f64 = 0.08;
 /// The share of a solution that the zero of the GPS altitude follows while the barometer is the better source.
 const GPS_ZERO_SHARE: f64 = 0.02;
 /// The standard deviations of climb rate and acceleration after an impact, m/s and m/s²: a fall, and a craft on its back.
@@ -43,6 +63,7 @@ pub enum AltitudeSource {
 /// The vertical filter. Altitudes count from the last zero.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) struct Vertical {
+    errors: Errors,
     covariance: KalmanCovariance,
     axis: Axis,
     /// The barometric and GPS altitude (m) of the zero.
@@ -56,13 +77,14 @@ pub(super) struct Vertical {
 }
 
 /// Returns the altitude (m) in the standard atmosphere for a pressure (Pa).
-pub(super) fn pressure_altitude_m(pressure_pa: f64) -> f64 {
+pub(in crate::firmware) fn pressure_altitude_m(pressure_pa: f64) -> f64 {
     (1.0 - math::powf(pressure_pa / 101_325.0, 1.0 / 5.255_88)) / 2.255_77e-5
 }
 
 impl Vertical {
     pub(super) fn new() -> Self {
         Self {
+            errors: USUAL,
             covariance: KalmanCovariance::new(0.5, 0.1, 0.1),
             axis: Axis::new(),
             baro_zero: None,
@@ -71,6 +93,16 @@ impl Vertical {
             spikes: 0,
             since_baro_s: f64::INFINITY,
             since_gps_s: f64::INFINITY,
+        }
+    }
+
+    /// Chooses the assumed errors.
+    pub(super) fn set_law(&mut self, is_plain: bool) {
+        let errors = if is_plain { PLAIN } else { USUAL };
+        if errors != self.errors {
+            self.errors = errors;
+            self.covariance = KalmanCovariance::new(0.5, 0.1, if is_plain { 0.0 } else { 0.1 });
+            self.axis.accel_error = 0.0;
         }
     }
 
@@ -126,7 +158,7 @@ impl Vertical {
             self.axis.velocity = 0.0;
             return;
         }
-        self.covariance.predict(dt, &NOISE);
+        self.covariance.predict(dt, &self.errors.noise);
         self.axis.predict(accel, dt);
     }
 
@@ -136,7 +168,7 @@ impl Vertical {
             return;
         }
         let zero = *self.baro_zero.get_or_insert(altitude - self.axis.position);
-        let sigma = BARO_SIGMA / preference.sqrt();
+        let sigma = self.errors.baro_sigma / preference.sqrt();
         let mut covariance = self.covariance;
         let gain = covariance.measure_position(sigma * sigma);
         let error = altitude - zero - self.axis.past(BARO_AGE).0;
@@ -164,11 +196,14 @@ impl Vertical {
         }
         let zero = *zero;
         self.since_gps_s = 0.0;
-        let gain = self.covariance.measure_velocity(math::powi(CLIMB_SIGMA * dilution.speed, 2));
+        let gain = self.covariance.measure_velocity(math::powi(self.errors.climb_sigma * dilution.speed, 2));
         let error = sample.vel_enu.z - self.axis.past(age).1;
         self.axis.correct(&gain, error.clamp(-5.0, 5.0), age, STEP_S);
-        let sigma =
-            if has_baro && source == AltitudeSource::Both { GPS_BESIDE_SIGMA } else { GPS_ALONE_SIGMA };
+        let sigma = if has_baro && source == AltitudeSource::Both {
+            self.errors.gps_beside_sigma
+        } else {
+            GPS_ALONE_SIGMA
+        };
         let gain = self.covariance.measure_position(math::powi(sigma * dilution.vertical, 2));
         let error = altitude - zero - self.axis.past(age).0;
         self.axis.correct(&gain, error, age, STEP_S);

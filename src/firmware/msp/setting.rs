@@ -36,7 +36,7 @@ pub(super) fn setting_info(call: &mut Call<'_>) -> Result<(), Refused> {
         None => (request, 0),
     };
     let name = std::str::from_utf8(name).map_err(|_| Refused)?;
-    let text = describe(find(name.trim()).ok_or(Refused)?);
+    let text = describe(&call.configuration.settings.resolved(find(name.trim()).ok_or(Refused)?));
     call.reply.u16(text.len() as i64);
     call.reply.bytes(text.as_bytes().get(offset..).unwrap_or_default());
     Ok(())

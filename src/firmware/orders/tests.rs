@@ -3,6 +3,7 @@ use strum::IntoEnumIterator as _;
 
 use super::*;
 use crate::autopilot::control::FlightControllers;
+use crate::autopilot::master::Return;
 use crate::geo::LatLon;
 use crate::plan::{Altitude, Waypoint, WaypointType};
 use crate::telemetry::{PlanSource, RxLossPolicy};
@@ -30,7 +31,7 @@ const ON: OrderFacts = OrderFacts { autopilot_switch: true, ..CALM };
 /// A flight of the navigator under orders, without a craft.
 struct Flight {
     orders: Orders,
-    navigator: Navigator,
+    navigator: Autopilot,
     controllers: FlightControllers,
     inputs: NavInputs,
     rescue: RescueConfig,
@@ -41,7 +42,7 @@ impl Flight {
         let rescue = RescueConfig { initial_climb_m: 10.0, ..RescueConfig::default() };
         Self {
             orders: Orders::default(),
-            navigator: Navigator::new(),
+            navigator: FirmwareProfile::Guide.into(),
             controllers: FlightControllers::default(),
             inputs: NavInputs::hovering(),
             rescue,
@@ -53,7 +54,8 @@ impl Flight {
         let rescue = self.rescue;
         self.inputs.time.0 += 10_000;
         self.orders.update(&mut self.navigator, &self.inputs, &params, &rescue, &plan(), &facts);
-        self.navigator.update(&self.inputs, &params, &plan(), &mut self.controllers);
+        let home = Return { altitude_m: 30.0, speed_mps: 5.0 };
+        self.navigator.update(&self.inputs, home, &params, &plan(), &mut self.controllers);
     }
 
     fn engaged() -> Self {
@@ -100,7 +102,7 @@ fn a_command_taken_back_leaves_the_craft_to_the_switch() {
         let facts = OrderFacts { autopilot_switch: switch, ..CALM };
         let mut flight = Flight::new();
         flight.update(facts);
-        flight.orders.take_back(&mut flight.navigator);
+        flight.orders.take_back(&mut flight.navigator, &flight.inputs);
         flight.update(facts);
         assert_eq!(flight.navigator.is_flying(), switch, "without a command nothing is taken back");
         let done =
@@ -108,7 +110,7 @@ fn a_command_taken_back_leaves_the_craft_to_the_switch() {
         assert_eq!((done, flight.orders.is_commanded()), (Ok(()), true));
         flight.update(facts);
         assert_eq!(flight.navigator.telemetry().source, PlanSource::Rth);
-        flight.orders.take_back(&mut flight.navigator);
+        flight.orders.take_back(&mut flight.navigator, &flight.inputs);
         flight.update(facts);
         let flown = flight.navigator.is_flying().then(|| flight.navigator.telemetry().source);
         assert_eq!((flown, flight.orders.is_commanded()), (after, false));
@@ -340,7 +342,7 @@ fn rescue_that_does_not_come_nearer_is_given_up_when_watched() {
         flight.update(CALM);
         for _ in 0..3200 {
             flight.update(switch);
-            flight.navigator.drain_events();
+            while flight.navigator.take_event().is_some() {}
         }
         let state = if given_up { NavState::Landing } else { NavState::Approaching };
         assert_eq!(flight.navigator.state(), state, "{sanity:?}");
@@ -440,7 +442,7 @@ proptest::proptest! {
                     let Flight { orders, navigator, inputs, .. } = &mut flight;
                     orders.return_to_home(navigator, inputs, &Params::default(), None).ok();
                 }
-                Deed::Cancel => flight.orders.take_back(&mut flight.navigator),
+                Deed::Cancel => flight.orders.take_back(&mut flight.navigator, &flight.inputs),
                 Deed::Wait(count) => updates = count,
             }
             for _ in 0..updates {

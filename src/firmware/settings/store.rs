@@ -2,7 +2,8 @@
 
 use super::parse::{check, parse};
 use super::table::{SETTINGS, find, slots};
-use super::{AssignError, Kind, Scope, Setting};
+use super::{AssignError, Kind, Scope, Setting, profile};
+use crate::telemetry::FirmwareProfile;
 use strum::IntoEnumIterator;
 
 /// The value of one setting.
@@ -86,7 +87,7 @@ impl Settings {
 
     /// Returns `true` if a setting differs from its default in one profile.
     pub fn is_changed(&self, setting: &Setting, instance: u8) -> bool {
-        self.value(setting, instance).is_some_and(|value| *value != setting.default_value())
+        self.value(setting, instance).is_some_and(|value| *value != self.resolved(setting).default_value())
     }
 
     /// Returns the settings of the active profiles that differ from their defaults: name, value and default.
@@ -94,7 +95,7 @@ impl Settings {
         let changed = SETTINGS.iter().filter(|setting| self.is_changed(setting, self.active(setting.scope)));
         changed.filter_map(|setting| {
             let value = setting.display(self.active_value(setting)?);
-            Some((setting.name.to_owned(), value, setting.display(&setting.default_value())))
+            Some((setting.name.to_owned(), value, setting.display(&self.resolved(setting).default_value())))
         })
     }
 
@@ -119,7 +120,7 @@ impl Settings {
 
     /// Parses `text` as the value of a setting of one profile.
     pub fn assign_in(&mut self, setting: &Setting, instance: u8, text: &str) -> Result<(), AssignError> {
-        self.put(setting, instance, parse(setting, text)?)
+        self.put(setting, instance, parse(&self.resolved(setting), text)?)
     }
 
     /// Sets a number, word position or port number in the active profile.
@@ -140,11 +141,39 @@ impl Settings {
 
     /// Sets a value in one profile after checking it.
     pub fn put(&mut self, setting: &Setting, instance: u8, value: Value) -> Result<(), AssignError> {
-        let value = check(setting, value)?;
+        let value = check(&self.resolved(setting), value)?;
+        let from = self.profile();
         let place = offset(setting, instance).and_then(|at| self.values.get_mut(at));
         let place = place.ok_or(AssignError::UnknownName)?;
         *place = value;
+        if setting.name == profile::NAME {
+            self.follow_profile(from);
+        }
         Ok(())
+    }
+
+    /// Returns the profile of the autopilot.
+    pub fn profile(&self) -> FirmwareProfile {
+        if self.flag(profile::NAME) { FirmwareProfile::Master } else { FirmwareProfile::Guide }
+    }
+
+    /// Returns a setting with the permitted values, the default and the role that it has in the present profile.
+    pub fn resolved(&self, setting: &Setting) -> Setting {
+        profile::resolved(setting, self.profile())
+    }
+
+    /// Gives settings that had the default of the profile `from` that of the present one, and limits the others to their
+    /// ranges.
+    fn follow_profile(&mut self, from: FirmwareProfile) {
+        for setting in profile::names().filter_map(find) {
+            let (before, now) = (profile::resolved(setting, from), self.resolved(setting));
+            let Some(place) = offset(setting, 0).and_then(|at| self.values.get_mut(at)) else { continue };
+            if *place == before.default_value() {
+                *place = now.default_value();
+            } else if let (Value::Number(number), Kind::Number { min, max, .. }) = (&mut *place, now.kind) {
+                *number = (*number).clamp(min, max);
+            }
+        }
     }
 
     /// Resets all values and the profile selection to those of a fresh vehicle.

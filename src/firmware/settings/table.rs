@@ -283,7 +283,7 @@ mod tests {
 
     #[test]
     fn every_name_is_found_in_any_case_and_is_no_other_builds_name() {
-        assert_eq!(COUNT, 420);
+        assert_eq!(COUNT, 421);
         for setting in &SETTINGS {
             let found = find(&setting.name.to_ascii_uppercase()).map(|found| found.name);
             assert_eq!(found, Some(setting.name));

@@ -2,11 +2,12 @@
 
 use nalgebra::Vector3;
 
-use crate::autopilot::Navigator;
 use crate::autopilot::control::{AltitudeController, FlightControllers};
 use crate::autopilot::io::{NavInputs, NavOutput};
 use crate::autopilot::land_detector::{GroundMeasurement, ImpactFacts};
-use crate::firmware::control::hold::{DescentRate, HoldModes, HoldOutput, Holds};
+use crate::autopilot::master::{HoldOrders, MasterNavigator, Return};
+use crate::autopilot::{Autopilot, Params};
+use crate::firmware::control::hold::{DescentRate, HoldModes, HoldOutput, HoldTuning, Holds};
 use crate::firmware::control::{ControlState, TiltDemand};
 use crate::firmware::estimate::Estimate;
 use crate::firmware::failsafe::{Failsafe, FailsafeAction, FailsafeFacts, Procedure, Response};
@@ -18,7 +19,8 @@ use crate::firmware::throttle_takeover::ThrottleTakeover;
 use crate::plan::FlightPlan;
 use crate::signals::SimTime;
 use crate::telemetry::{
-    FirmwareEvent, FirmwareNotice, InFlightCommand, InFlightRefusal, Mode, ModeFlags, NavEvent, Refusal,
+    FirmwareEvent, FirmwareNotice, FirmwareProfile, InFlightCommand, InFlightRefusal, Mode, ModeFlags,
+    NavEvent, Refusal,
 };
 
 use super::flight_control::Demand;
@@ -46,7 +48,7 @@ pub(in crate::firmware) struct Flown {
 pub(in crate::firmware) struct Navigation {
     pub failsafe: Failsafe,
     pub orders: Orders,
-    pub navigator: Navigator,
+    pub navigator: Autopilot,
     holds: Holds,
     throttle_takeover: ThrottleTakeover,
     /// The controllers, used by the navigator or by the holds, whichever flies.
@@ -61,13 +63,45 @@ pub(in crate::firmware) struct Navigation {
     only_levelled: Option<FirmwareNotice>,
 }
 
+/// Runs the holds with the laws of master.
+fn hold_by_master(
+    navigator: &mut MasterNavigator,
+    modes: HoldModes,
+    now: &NavInputs,
+    stick_us: Option<f64>,
+    params: &Params,
+    tuning: &HoldTuning,
+) -> HoldOutput {
+    let climb_mps = match (modes.descend, stick_us) {
+        // Its failsafe descends at the climb rate of ALTHOLD, down to the ground.
+        (Some(DescentRate::Failsafe), _) => -params.climb_rate_mps(),
+        (Some(rate), _) => -rate.at(now.alt_m, params),
+        (None, Some(stick_us)) => tuning.climb_mps(stick_us, navigator.hover_us(params), params),
+        (None, None) => 0.0,
+    };
+    let position = modes.position && now.fix && tuning.uses_gps;
+    let by_stick = tuning.stick_tilt(now, params.max_tilt_rad()).filter(|_| position);
+    let orders = HoldOrders {
+        climb_mps: (now.altitude_valid && (modes.altitude || modes.descend.is_some())).then_some(climb_mps),
+        position,
+        sticks: by_stick.is_some(),
+    };
+    let held = navigator.hold(orders, now, params);
+    HoldOutput {
+        tilt: by_stick.or(held.tilt.map(|tilt| TiltDemand { pitch_down_rad: tilt.x, roll_rad: tilt.y })),
+        throttle: held.throttle,
+        no_position: modes.position && !position,
+        touchdown: false,
+    }
+}
+
 impl Navigation {
     /// Creates the state in which nothing flies the craft. The first update counts from `now`.
     pub(in crate::firmware) fn new(now: SimTime) -> Self {
         Self {
             failsafe: Failsafe::default(),
             orders: Orders::default(),
-            navigator: Navigator::new(),
+            navigator: FirmwareProfile::default().into(),
             holds: Holds::default(),
             throttle_takeover: ThrottleTakeover::default(),
             controllers: FlightControllers::default(),
@@ -83,12 +117,17 @@ impl Navigation {
     pub(in crate::firmware) fn observe(
         &mut self,
         now: SimTime,
+        parameters: &Parameters,
         sensing: &Sensing,
         safety: &Safety,
         rc: &RcInput,
         control: &ControlState,
     ) {
         let dt = now.seconds_since(std::mem::replace(&mut self.updated_at, now));
+        let profile = parameters.nav.profile;
+        if profile != self.navigator.profile() && !safety.arming.armed() {
+            self.navigator = profile.into();
+        }
         if safety.arming.armed() && !self.inputs.armed {
             self.last_refusal = None;
         }
@@ -103,6 +142,7 @@ impl Navigation {
             failsafe: self.failsafe.active(),
             battery_low: sensing.battery.is_low(),
             home: safety.home,
+            pressure_alt_m: sensing.pressure_alt_m(),
             throttle_us: control.throttle_us,
             hover_us: self.controllers.altitude.learned_hover_us(),
             stick_roll: stick(sticks.roll),
@@ -210,14 +250,14 @@ impl Navigation {
         };
         let (nav, rescue) = (&parameters.nav, &parameters.rescue);
         self.orders.update(&mut self.navigator, inputs, nav, rescue, stored, &facts);
-        let output = self.navigator.update(inputs, nav, stored, &mut self.controllers);
-        self.output = self.navigator.is_flying().then_some(output);
+        let home = Return { altitude_m: rescue.return_alt_m, speed_mps: rescue.ground_speed_mps };
+        self.output = self.navigator.update(inputs, home, nav, stored, &mut self.controllers);
         self.report_events(outbox)
     }
 
     fn report_events(&mut self, outbox: &mut Outbox) -> bool {
         let mut touched_down = false;
-        for event in self.navigator.drain_events() {
+        while let Some(event) = self.navigator.take_event() {
             touched_down |= event == NavEvent::Disarm;
             outbox.push(FirmwareEvent::Nav(event));
         }
@@ -295,7 +335,14 @@ impl Navigation {
                 position: armed && modes.has(Mode::PosHold) && self.inputs.heading_valid,
                 descend: descend.filter(|_| armed),
             };
-            self.holds.update(hold, &self.inputs, stick_us, nav, tuning, &mut self.controllers)
+            match &mut self.navigator {
+                Autopilot::Guide(_) => {
+                    self.holds.update(hold, &self.inputs, stick_us, nav, tuning, &mut self.controllers)
+                }
+                Autopilot::Master(navigator) => {
+                    hold_by_master(navigator, hold, &self.inputs, stick_us, nav, tuning)
+                }
+            }
         };
         let no_heading = armed && modes.has(Mode::PosHold) && !self.inputs.heading_valid;
         let only_levelled = match (no_heading, held.no_position) {
@@ -311,6 +358,12 @@ impl Navigation {
             Some(output) => Demand::from(output),
             None => Demand { tilt: held.tilt, throttle: held.throttle, ..Demand::default() },
         };
+        if self.navigator.profile() == FirmwareProfile::Master {
+            // Its holds know no ground, and the sticks tilt the craft in a mission, too.
+            let by_stick = parameters.hold.stick_tilt(&self.inputs, parameters.nav.max_tilt_rad());
+            let tilt = by_stick.filter(|_| self.output.is_some()).or(demand.tilt);
+            return Flown { demand: Demand { tilt, ..demand }, touchdown: false };
+        }
         let land = &self.controllers.land;
         let share = land.tilt_share();
         let tilt = demand.tilt.map(|tilt| TiltDemand {
@@ -347,7 +400,7 @@ impl Navigation {
 
     /// Cancels the command to fly home.
     pub(in crate::firmware) fn cancel_command(&mut self) {
-        self.orders.take_back(&mut self.navigator);
+        self.orders.take_back(&mut self.navigator, &self.inputs);
     }
 
     /// Returns `true` if full throttle does not lift the craft off the ground.
@@ -371,7 +424,12 @@ impl Navigation {
 
     /// Returns the neutral position of the throttle stick in ALTHOLD, µs.
     pub(in crate::firmware) fn hover_stick_us(&self, parameters: &Parameters) -> f64 {
-        self.controllers.altitude.hover_stick_us(&parameters.nav, parameters.hold.mid_us)
+        match &self.navigator {
+            Autopilot::Guide(_) => {
+                self.controllers.altitude.hover_stick_us(&parameters.nav, parameters.hold.mid_us)
+            }
+            Autopilot::Master(navigator) => navigator.hover_us(&parameters.nav),
+        }
     }
 
     /// Returns the controller of navigator and holds that keeps the altitude.

@@ -4,7 +4,7 @@ use nalgebra::Vector3;
 
 use crate::firmware::FirmwareOptions;
 use crate::firmware::battery::Battery;
-use crate::firmware::estimate::{DueTasks, Estimate, Estimator, EstimatorOptions};
+use crate::firmware::estimate::{DueTasks, Estimate, Estimator, EstimatorOptions, pressure_altitude_m};
 use crate::firmware::outbox::Outbox;
 use crate::firmware::parameters::Parameters;
 use crate::msp::BatteryState;
@@ -20,6 +20,8 @@ pub(in crate::firmware) struct Sensing {
     /// The newest magnetic field, body forward-left-up, as measured.
     pub mag_flu: Vector3<f64>,
     pub fix: bool,
+    site_alt_m: f64,
+    pressure_alt_m: Option<f64>,
     /// `true` if the magnetometer was reported as doubted.
     heading_doubted: bool,
     /// `true` if the tilt was reported as doubted.
@@ -28,11 +30,11 @@ pub(in crate::firmware) struct Sensing {
 
 impl Sensing {
     /// Creates the state at boot, in which nothing is known yet.
-    pub(in crate::firmware) fn new(options: &FirmwareOptions, parameters: &Parameters) -> Self {
+    pub(in crate::firmware) fn new(firmware: &FirmwareOptions, parameters: &Parameters) -> Self {
         let options = EstimatorOptions {
-            attitude: options.attitude,
-            gps_timeout_s: options.gps_timeout_s,
-            declination_deg: options.declination_deg,
+            attitude: firmware.attitude,
+            gps_timeout_s: firmware.gps_timeout_s,
+            declination_deg: firmware.declination_deg,
         };
         Self {
             estimator: Estimator::new(options, parameters.estimator.clone()),
@@ -40,9 +42,16 @@ impl Sensing {
             imu_frozen: false,
             mag_flu: Vector3::zeros(),
             fix: false,
+            site_alt_m: firmware.site_alt_m,
+            pressure_alt_m: None,
             heading_doubted: false,
             tilt_doubted: false,
         }
+    }
+
+    /// Returns the altitude above the site by the newest sample of the barometer, m.
+    pub(in crate::firmware) fn pressure_alt_m(&self) -> Option<f64> {
+        self.pressure_alt_m
     }
 
     pub(in crate::firmware) fn set_tuning(&mut self, parameters: &Parameters) {
@@ -59,6 +68,9 @@ impl Sensing {
         let due = self.estimator.update(frame);
         if let Some(sample) = frame.battery {
             self.update_battery(sample, parameters, outbox);
+        }
+        if let Some(pressure_pa) = frame.pressure_pa {
+            self.pressure_alt_m = Some(pressure_altitude_m(pressure_pa) - self.site_alt_m);
         }
         self.mag_flu = frame.mag_flu.unwrap_or(self.mag_flu);
         due

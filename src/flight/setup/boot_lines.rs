@@ -1,5 +1,6 @@
 //! Command lines that are applied at boot as if they were typed.
 
+use super::{OF_PROFILE, replacement};
 use crate::firmware::cli::{
     COMMANDS, CliContext, CliFacts, CliMode, CliReply, Interpreter, advice, apply_lines,
 };
@@ -37,13 +38,28 @@ impl BootLines {
         })
     }
 
+    /// Returns `true` if they choose the profile of the embedded firmware, which no other firmware has.
+    pub fn choose_profile(&self) -> bool {
+        self.source == OF_PROFILE
+    }
+
+    /// Replaces the settings of the guide with which master does not fly as expected.
+    pub(super) fn replace_settings(&mut self) {
+        let lines = self.text.lines().map(|line| {
+            let setting = line.strip_prefix("set ").and_then(replacement);
+            setting.map_or_else(|| line.to_owned(), |setting| format!("set {setting}"))
+        });
+        self.text = lines.map(|line| line + "\n").collect();
+    }
+
     /// Applies the lines. Returns the notices for the pilot, or the lines that the firmware refuses with their
     /// places.
     pub(super) fn apply(
         &self,
         configuration: &mut Configuration,
+        site_alt_m: f64,
     ) -> Result<Vec<FirmwareNotice>, Vec<PlanError>> {
-        let facts = CliFacts::default();
+        let facts = CliFacts { site_alt_m, ..CliFacts::default() };
         let mut context = CliContext { configuration, facts: &facts };
         let mut interpreter = Interpreter::new(CliMode::File);
         let mut reasons = Vec::new();

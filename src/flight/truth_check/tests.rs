@@ -5,6 +5,7 @@ use crate::signals::SimTime;
 use crate::telemetry::{GuardName, GuardOp};
 
 const SETTINGS: SettingsView = SettingsView {
+    profile: crate::telemetry::FirmwareProfile::Guide,
     arrival_radius_m: 5.0,
     hold_radius_m: 2.0,
     orbit_radius_m: 10.0,

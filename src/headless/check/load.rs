@@ -52,7 +52,12 @@ pub(super) fn load(args: &CheckArgs) -> Result<Loaded, AppError> {
             Ok(scenario) if scenario.slow && !args.slow && !is_named => loaded.left_out += 1,
             // Of many thousand scenarios only those that are flown are kept.
             Ok(scenario) if !scenario.cases.iter().any(|case| is_wanted(&scenario, case, args)) => {}
-            Ok(scenario) => loaded.scenarios.push(scenario),
+            Ok(mut scenario) => {
+                if let Some(profile) = args.profile {
+                    scenario.use_profile(profile);
+                }
+                loaded.scenarios.push(scenario);
+            }
             Err(error) if error.code == crate::process::error::USAGE => problems.push(error.message),
             Err(error) => return Err(error),
         }

@@ -206,7 +206,8 @@ pub(crate) fn prepare(
     setup.remote_controller = true;
     let plan = setup.plan.plan.clone();
     let mut firmware = firmware.with_settings(&setup.plan.settings, &[]);
-    let of_case = setup.boot_lines.iter().flat_map(|lines| lines.text.lines());
+    let of_case = setup.boot_lines.iter().filter(|lines| !lines.choose_profile());
+    let of_case = of_case.flat_map(|lines| lines.text.lines());
     firmware.lines.usual.extend(of_case.map(str::to_owned));
     let mut vehicle = setup::build(setup, &mut Vec::new())?;
     let interrupted = Arc::clone(interrupted);

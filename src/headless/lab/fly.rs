@@ -2,10 +2,12 @@
 
 use std::path::Path;
 use std::sync::Arc;
-use std::sync::atomic::AtomicBool;
+use std::sync::atomic::{AtomicBool, Ordering};
 
 use super::programme::{Entry, Programme};
+use crate::fc::{ProvisionLines, starter_lines};
 use crate::files::output_file::{cannot_write, replace};
+use crate::flight::setup::BootLines;
 use crate::headless::check::{RemoteFlown, Stopwatch, fly_case, judged, options_to_open};
 use crate::headless::setup;
 use crate::launch::RemoteFirmware;
@@ -15,14 +17,28 @@ use crate::report::check::CheckedFlight;
 use crate::report::compare::flown_track;
 use crate::report::lab::{LabFlight, measures_of, properties, values};
 use crate::report::route::Route;
-use crate::scenario::{Air, Case, Flown, Judgement, Scenario};
+use crate::runner::Runner;
+use crate::scenario::{Air, Case, CaseFlight, Flown, Judgement, Scenario};
+use crate::telemetry::FirmwareProfile;
 use crate::vehicle::Vehicle;
+
+/// The prefix of a setting's line.
+const SET: &str = "set ";
+
+/// A build.
+#[derive(Debug)]
+pub(super) enum Build {
+    /// The embedded firmware in the profile `master`.
+    Embedded,
+    /// An executable.
+    Executable(Box<RemoteFirmware>),
+}
 
 /// The two builds and their flights.
 #[derive(Clone, Copy)]
 pub(super) struct Pair<'a> {
     pub(super) programme: &'a Programme,
-    pub(super) firmwares: &'a (Option<RemoteFirmware>, RemoteFirmware),
+    pub(super) builds: &'a (Option<Build>, Build),
     pub(super) interrupted: &'a Arc<AtomicBool>,
     /// The folder for the signals of each flight.
     pub(super) keep: Option<&'a Path>,
@@ -33,20 +49,20 @@ impl Pair<'_> {
     pub(super) fn fly(self, entry: Entry, thread: usize) -> Option<Result<LabFlight, AppError>> {
         let (scenario, case, air) = self.programme.flight(entry)?;
         let mut one =
-            |firmware| self.one(firmware, (scenario, case, air), (self.programme.can_open(entry), thread));
-        let base = match self.firmwares.0.as_ref().map(&mut one) {
+            |build| self.one(build, (scenario, case, air), (self.programme.can_open(entry), thread));
+        let base = match self.builds.0.as_ref().map(&mut one) {
             Some(None) => return None,
             Some(Some(flown)) => Some(flown),
             None => None,
         };
-        let head = one(&self.firmwares.1)?;
+        let head = one(&self.builds.1)?;
         Some(base.transpose().and_then(|base| Ok(LabFlight { base, head: head? })))
     }
 
     /// Flies and judges a flight of one build. A flight that cannot be prepared has its problem.
     fn one(
         self,
-        firmware: &RemoteFirmware,
+        build: &Build,
         (scenario, case, air): (&Scenario, &Case, &Air),
         (can_open, thread): (bool, usize),
     ) -> Option<Result<CheckedFlight, AppError>> {
@@ -60,11 +76,16 @@ impl Pair<'_> {
             seed: air.seed,
             seeds: case.airs.len(),
             seed_is_given: self.programme.has_own_seeds(),
-            is_remote: true,
-            firmware_options: options_to_open(firmware).filter(|_| can_open),
+            is_remote: matches!(build, Build::Executable(_)),
+            firmware_options: build.options_to_open().filter(|_| can_open),
             ..CheckedFlight::default()
         };
-        let flown = fly_case(firmware, case, air, self.interrupted, thread, false, &mut Vec::new());
+        let flown = match build {
+            Build::Embedded => fly_embedded(case, air, self.interrupted),
+            Build::Executable(firmware) => {
+                fly_case(firmware, case, air, self.interrupted, thread, false, &mut Vec::new())
+            }
+        };
         let with_problem = |problem| Some(Ok(CheckedFlight { problem: Some(problem), ..checked.clone() }));
         match flown {
             Err(Stopped::Interrupted | Stopped::BySubscriber) => None,
@@ -72,7 +93,7 @@ impl Pair<'_> {
             Ok(Err(problem)) => with_problem(problem),
             Ok(Ok(RemoteFlown { flown, problem, hash, .. })) => {
                 Some(measured(case, air, &flown).and_then(|(measures, properties)| {
-                    self.keep(firmware, &checked, &flown)?;
+                    self.keep(build, &checked, &flown)?;
                     let mut flight = judged(checked, case, flown, &started);
                     flight.problem = problem;
                     flight.hash = hash.unwrap_or(flight.hash);
@@ -85,9 +106,9 @@ impl Pair<'_> {
     }
 
     /// Writes the signals of a flight, if they are wanted: `lab-landing calm seed 3.head.csv`.
-    fn keep(self, firmware: &RemoteFirmware, flight: &CheckedFlight, flown: &Flown) -> Result<(), AppError> {
+    fn keep(self, build: &Build, flight: &CheckedFlight, flown: &Flown) -> Result<(), AppError> {
         let Some(folder) = self.keep else { return Ok(()) };
-        let side = if std::ptr::eq(firmware, &raw const self.firmwares.1) { "head" } else { "base" };
+        let side = if std::ptr::eq(build, &raw const self.builds.1) { "head" } else { "base" };
         let case = if flight.case.is_empty() { String::new() } else { format!(" {}", flight.case) };
         let name = format!("{}{case} seed {}.{side}.csv", flight.scenario, flight.seed);
         // A case can have any characters.
@@ -95,6 +116,46 @@ impl Pair<'_> {
         let path = folder.join(name);
         replace(&path, values(flown).as_bytes()).map_err(|error| cannot_write(&path, &error))
     }
+}
+
+impl Build {
+    /// Returns the options of `betadeck open` that fly with the same build, as text with a blank before each.
+    fn options_to_open(&self) -> Option<String> {
+        match self {
+            Self::Embedded => Some(" --profile master".to_owned()),
+            Self::Executable(firmware) => options_to_open(firmware),
+        }
+    }
+}
+
+/// Flies a case with the embedded firmware in the profile `master`.
+fn fly_embedded(
+    case: &Case,
+    air: &Air,
+    interrupted: &AtomicBool,
+) -> Result<Result<RemoteFlown, String>, Stopped> {
+    let mut case = case.clone();
+    // An executable starts with the guide's settings and the starter modes, under those of the plan and the case.
+    let lines = match starter_lines(&ProvisionLines::default(), true) {
+        Ok(lines) => lines.usual,
+        Err(problem) => return Ok(Err(problem.to_owned())),
+    };
+    let (settings, others): (Vec<&str>, Vec<&str>) =
+        lines.iter().map(String::as_str).partition(|line| line.starts_with(SET));
+    let settings = settings.iter().map(|line| line.trim_start_matches(SET).to_owned());
+    let plan = &mut case.setup.plan;
+    plan.settings = settings.chain(std::mem::take(&mut plan.settings)).collect();
+    let modes = BootLines { source: "starter modes".to_owned(), text: others.join("\n") };
+    case.setup.boot_lines.insert(0, modes);
+    case.use_profile(FirmwareProfile::Master);
+    let mut flight = match CaseFlight::new(&case, air) {
+        Ok(flight) => flight,
+        Err(problem) => return Ok(Err(problem)),
+    };
+    let mut runner = Runner::new(flight.vehicle().step_us(), f64::INFINITY, None);
+    runner.fly(&mut flight, &mut (), || interrupted.load(Ordering::Relaxed))?;
+    let flown = flight.finish();
+    Ok(Ok(RemoteFlown { flown, problem: None, hash: None, report: None }))
 }
 
 /// The measures and the judgements that all flights have in common.

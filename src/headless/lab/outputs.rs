@@ -21,6 +21,7 @@ pub(super) struct Outputs {
     junit: Option<FinalOutput>,
     markdown: Option<FinalOutput>,
     html: Option<FinalOutput>,
+    likeness: Option<FinalOutput>,
     /// The command that gives the answer again.
     command: String,
 }
@@ -44,6 +45,7 @@ impl Outputs {
             ("--junit", args.junit.as_ref()),
             ("--markdown", args.markdown.as_ref()),
             ("--html", args.html.as_ref()),
+            ("--likeness", args.likeness.as_ref()),
         ] {
             path.map_or(Ok(()), |path| kept.claim(option, path))?;
         }
@@ -54,6 +56,7 @@ impl Outputs {
             junit: prepare(args.junit.as_deref())?,
             markdown: prepare(args.markdown.as_deref())?,
             html: prepare(args.html.as_deref())?,
+            likeness: prepare(args.likeness.as_deref())?,
             command: report::command(repeat),
         })
     }
@@ -80,6 +83,7 @@ impl Outputs {
             to(self.json, &|| json.clone()),
             to(self.junit, &|| junit(&summary())),
             to(self.markdown, &|| lab.markdown(command)),
+            to(self.likeness, &|| lab.likeness(command)),
             to(self.html, &|| html::lab_page(lab, command, &report::program())),
         ];
         shown?;

@@ -42,7 +42,7 @@ impl Programme {
     pub(super) fn read(args: &LabArgs) -> Result<Self, AppError> {
         let (mut scenarios, mut plans) = (Vec::<Scenario>::new(), Vec::new());
         for path in &args.with {
-            let (scenario, is_plan) = reseeded(args.seed, |seeds| load_or_plan(path, OF_PLAN, seeds))?;
+            let (scenario, is_plan) = reseeded(args, |seeds| load_or_plan(path, OF_PLAN, seeds))?;
             if scenarios.iter().any(|other| other.name == scenario.name) {
                 let name = &scenario.name;
                 return Err(AppError::input(format!(
@@ -64,7 +64,7 @@ impl Programme {
                     "--with {file}: the programme has a scenario {name}: rename it"
                 )));
             }
-            scenarios.push(reseeded(args.seed, |seeds| Ok((load_one(&name, seeds, false)?, false)))?.0);
+            scenarios.push(reseeded(args, |seeds| Ok((load_one(&name, seeds, false)?, false)))?.0);
         }
         let topics = scenarios.len();
         for number in first..first + MISSIONS {
@@ -91,7 +91,13 @@ impl Programme {
                 "no flight has this text in its name: betadeck lab --list shows the names",
             ));
         }
-        Ok(Self { scenarios, entries, measures, plans, has_own_seeds: args.seed != 1 })
+        Ok(Self {
+            scenarios,
+            entries,
+            measures,
+            plans,
+            has_own_seeds: args.seed != 1 || args.seeds.is_some(),
+        })
     }
 
     /// Returns the flights in their order.
@@ -143,10 +149,13 @@ impl Programme {
 
 /// Reads a scenario, for a number above 1 with other seeds than its own.
 fn reseeded(
-    number: u32,
+    args: &LabArgs,
     read: impl Fn(Option<&[u64]>) -> Result<(Scenario, bool), AppError>,
 ) -> Result<(Scenario, bool), AppError> {
-    let own = read(None)?;
+    if let Some(seeds) = &args.seeds {
+        return read(Some(&seeds.0));
+    }
+    let (own, number) = (read(None)?, args.seed);
     if number == 1 {
         return Ok(own);
     }

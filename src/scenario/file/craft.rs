@@ -14,6 +14,7 @@ use crate::scenario::case::OWN_LINES;
 use crate::scenario::varied::Tolerance;
 use crate::signals::SimTime;
 use crate::sim::{Airframe, Home, MAX_FAULTS, STEP_RATES_HZ, ScheduledFault, Switches, WorldConfig};
+use crate::telemetry::FirmwareProfile;
 
 /// The most stick inputs of a craft.
 const MAX_STICKS: usize = 1000;
@@ -74,8 +75,18 @@ pub(super) fn read(layers: &Layers<'_, '_>, plan: PlanFile, reader: &mut Reader<
     });
     let boot_lines = boot_lines(layers, &section, reader);
     let stick_inputs = sticks(&section, reader);
-    let setup =
+    let profile = get("profile").and_then(|value| match reader.text(value)?.parse::<FirmwareProfile>() {
+        Ok(profile) => Some(profile),
+        Err(_) => {
+            reader.problem(value.span(), "this is not a profile", "allowed: guide, master");
+            None
+        }
+    });
+    let mut setup =
         FlightSetup { world, home, plan, attitude, boot_lines, stick_inputs, ..FlightSetup::default() };
+    if let Some(profile) = profile {
+        setup.use_profile(profile, false);
+    }
     if let Err(error) = setup.configuration() {
         let place = section.last().map_or(0..0, TomlTable::span);
         reader.problem(place, error.to_string(), "");

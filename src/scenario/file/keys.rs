@@ -56,6 +56,7 @@ pub(super) const CRAFT_KEYS: &[&str] = &[
     "takeoff_m",
     "tolerance_m",
     "pilot",
+    "profile",
     "settings",
     "settings_file",
     "lines",

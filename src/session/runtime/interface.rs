@@ -4,11 +4,9 @@
 use std::time::Instant;
 
 use crate::events::Notice;
-use crate::fc::{
-    CraftSettings, LIST, Upload, UploadProgress, UploadReport, UploadView, plan_above_home, replace_settings,
-};
+use crate::fc::{CraftSettings, LIST, Upload, UploadProgress, UploadReport, UploadView, plan_above_home};
 use crate::firmware::cli::{CliAction, CliReply, advice};
-use crate::flight::hazards;
+use crate::flight::{hazards, setup::replace_settings};
 use crate::msp::code;
 use crate::plan::{AltitudeReference, FlightPlan};
 use crate::session::ReplyTo;
@@ -17,6 +15,7 @@ use crate::session::host_status::HostStatus;
 use crate::session::late_answers::{LateAnswers, NO_ANSWER, no_answer_line};
 use crate::session::persistence::Persistence;
 use crate::session::request_handler::RequestHandler;
+use crate::telemetry::FirmwareProfile;
 use crate::text::printable;
 use crate::vehicle::{
     Answer, CliSession, LateAnswer, Message, Reply as VehicleReply, Ticket, Vehicle, VehicleCommand,
@@ -94,6 +93,9 @@ impl Interface {
         craft: &mut UploadTo<'_>,
     ) -> Outcome {
         if craft.vehicle.embedded().is_some() {
+            if craft.vehicle.controller().profile() == Some(FirmwareProfile::Master) {
+                replace_settings(&mut settings);
+            }
             let result = match craft.vehicle.apply(&VehicleCommand::upload(plan.clone(), settings)) {
                 Answer::Now(VehicleReply::Refused(refusal)) => Err(refusal.to_string()),
                 _ => Ok(UploadReport::default()),

@@ -455,7 +455,7 @@ fn action_after(state: &Shared, refusal: Refusal) -> String {
                 key(Action::Autopilot)
             )
         }
-        Refusal::Aborted(AbortReason::Stalled | AbortReason::Flyaway) => {
+        Refusal::Aborted(AbortReason::Stalled | AbortReason::Flyaway | AbortReason::MagFault) => {
             format!("{} off and on again resumes", key(Action::Autopilot))
         }
     }

@@ -31,6 +31,8 @@ macro_rules! commands {
 commands! {
     "set" "NAME=VALUE" "A setting of the craft; without a value: shows it" vehicle::set, vehicle::complete_set;
     "cli" "LINE" "A line for the firmware's command line" vehicle::cli, vehicle::complete_cli;
+    "profile" "guide or master" "The laws of the embedded autopilot: the test guide's, or those of today's master"
+        vehicle::profile, vehicle::complete_profile;
     "open" "FILE" "Open a plan file; without a name: choose one" plan::open, plan::complete;
     "save" "FILE" "Save the plan in this file; without a name: in its own" plan::save, plan::complete;
     "settings-file" "FILE" "Save the changed settings of the craft in a new file, for --settings"

@@ -1,6 +1,9 @@
 //! Commands that go through the craft's command line.
 
+use strum::IntoEnumIterator as _;
+
 use crate::fc::{CraftSetting, cli_block};
+use crate::telemetry::FirmwareProfile;
 use crate::ui::model::action::Action;
 use crate::ui::model::effect::Effect;
 use crate::ui::model::files::FileRequest;
@@ -29,6 +32,27 @@ pub(super) fn complete_set(state: &Shared, _: &str, typed: &str) -> Vec<String> 
     let arguments = lines.iter().filter_map(|line| line.strip_prefix("set "));
     // After a name, only its value can follow.
     arguments.map(|line| if line.contains('=') { line.to_owned() } else { format!("{line}=") }).collect()
+}
+
+/// Changes the laws of the embedded autopilot.
+pub(super) fn profile(state: &mut Shared, _: &str, name: &str) -> Result<Vec<Request>, String> {
+    let Ok(profile) = name.parse::<FirmwareProfile>() else {
+        return Err("Write :profile guide or :profile master.".to_owned());
+    };
+    if state.view.remote.is_some() {
+        return Err("The flight controller is another program, whose laws are its own.".to_owned());
+    }
+    if state.view.vehicle.craft.armed == Some(true) {
+        return Err("The laws cannot change in flight: disarm first.".to_owned());
+    }
+    let line = format!("set {}", profile.setting());
+    Ok(vec![Request::Cli { line, is_reported: true }])
+}
+
+/// Returns the names of the profiles.
+pub(super) fn complete_profile(_: &Shared, _: &str, typed: &str) -> Vec<String> {
+    let names = FirmwareProfile::iter().map(|profile| profile.to_string());
+    names.filter(|name| name.starts_with(typed)).collect()
 }
 
 /// Runs a line of the firmware's command line and shows the CLI panel with the answer. Without an argument it only

@@ -11,7 +11,7 @@ use ratatui::layout::{Position, Rect};
 use ratatui::text::Line;
 
 use super::{Content, Hint, horizon};
-use crate::telemetry::{Guard, GuardName, NavState};
+use crate::telemetry::{FirmwareProfile, Guard, GuardName, NavState};
 use crate::ui::acts::status_message;
 use crate::ui::formatting::{cut, fixed, signed, within};
 use crate::ui::model::action::{Action, PanelAction};
@@ -24,7 +24,7 @@ use crate::ui::transitions::{Transition, Transitions};
 use crate::ui::units::Units;
 
 use super::content::scrolled;
-use super::state_diagram::{COMPACT, Diagram, FULL, LOW};
+use super::state_diagram::{COMPACT, Diagram, FULL, LOW, MASTER};
 use crate::ui::area::{line, row, span};
 use crate::ui::text_wrap::wrapped;
 
@@ -125,7 +125,7 @@ impl Content for StatePanel {
 }
 
 fn draw(own: &Transitions, state: &Shared, area: Rect, buffer: &mut Buffer) {
-    let diagram = diagram(area);
+    let diagram = diagram(state, area);
     let mut top = draw_status_message(state, area, diagram, buffer);
     top += draw_machine(own, state, below(area, top), diagram, buffer);
     top += draw_guards(state, below(area, top), buffer);
@@ -139,7 +139,11 @@ fn draw(own: &Transitions, state: &Shared, area: Rect, buffer: &mut Buffer) {
 }
 
 /// Returns the largest state diagram that leaves room for the guards.
-fn diagram(area: Rect) -> &'static Diagram {
+fn diagram(state: &Shared, area: Rect) -> &'static Diagram {
+    let profile = state.view.vehicle.settings.map_or(FirmwareProfile::Guide, |settings| settings.profile);
+    if profile == FirmwareProfile::Master {
+        return &MASTER;
+    }
     let fits = |diagram: &Diagram| area.width >= diagram.width && area.height >= diagram.height + GUARD_ROWS;
     [&FULL, &COMPACT].into_iter().find(|diagram| fits(diagram)).unwrap_or(&LOW)
 }
@@ -189,7 +193,7 @@ fn draw_machine(
     let last = own.shown(state).next_back().filter(|last| is_lit(state, last));
     let left = (area.width.saturating_sub(diagram.width)) / 2;
     let place = Rect { x: area.x + left, width: area.width - left, ..area };
-    diagram.draw(&state.theme, nav.state, last.map(|last| (last.from, last.to)), place, buffer);
+    diagram.draw(&state.theme, nav, last.map(|last| (last.from, last.to)), place, buffer);
     diagram.height.min(area.height)
 }
 
@@ -263,7 +267,15 @@ fn time_of_leg(state: &Shared) -> Option<(f64, f64)> {
 
 /// Returns `true` for a guard that ends the mission when it holds. Such a guard is good as long as it does not hold.
 fn is_watch(guard: &Guard) -> bool {
-    matches!(guard.name, GuardName::Fence | GuardName::NoProgress | GuardName::Flyaway | GuardName::Overrun)
+    matches!(
+        guard.name,
+        GuardName::Fence
+            | GuardName::NoProgress
+            | GuardName::Flyaway
+            | GuardName::Overrun
+            | GuardName::Overspeed
+            | GuardName::WrongHeading
+    )
 }
 
 /// Returns the name of a guard without the part that the state already implies.
@@ -275,6 +287,7 @@ fn short_name(guard: &Guard) -> &'static str {
         GuardName::TouchdownSink => "sink",
         GuardName::TouchdownTime => "time",
         GuardName::HeldOffAltitude => "held off",
+        GuardName::Overspeed => "overspeed",
         other => other.into(),
     }
 }

@@ -4,13 +4,13 @@ use ratatui::buffer::Buffer;
 use ratatui::layout::Rect;
 use ratatui::style::Style;
 
-use crate::telemetry::NavState;
+use crate::telemetry::{FirmwareProfile, NavState, NavTelemetry, TransitionReason};
 use crate::ui::drawing;
 use crate::ui::theme::{Role, Theme};
 
 mod drawings;
 
-pub(crate) use drawings::{COMPACT, FULL, LOW};
+pub(crate) use drawings::{COMPACT, FULL, LOW, MASTER};
 
 /// A state at a column and row.
 struct Node(NavState, u16, u16);
@@ -26,16 +26,20 @@ struct Edge {
 pub(crate) struct Diagram {
     pub width: u16,
     pub height: u16,
+    /// The profile whose names the states have.
+    profile: FirmwareProfile,
+    /// The place of a mission that was given up, if it has a name.
+    aborted: Option<(u16, u16)>,
     nodes: &'static [Node],
     edges: &'static [Edge],
 }
 
 impl Diagram {
-    /// Draws the machine at the top left of the area, with `active` and the strokes of `last` lit.
+    /// Draws the machine at the top left of the area, with the state of `nav` and the strokes of `last` lit.
     pub(crate) fn draw(
         &self,
         theme: &Theme,
-        active: NavState,
+        nav: &NavTelemetry,
         last: Option<(NavState, NavState)>,
         area: Rect,
         buffer: &mut Buffer,
@@ -56,9 +60,16 @@ impl Diagram {
                 }
             }
         }
-        for &Node(state, column, row) in self.nodes {
-            let name: &'static str = state.into();
-            if state == active {
+        let is_aborted = matches!(nav.reason, Some(TransitionReason::GivenUp(_)));
+        let active = self.profile.state_word(nav.state, is_aborted);
+        let states = self
+            .nodes
+            .iter()
+            .map(|&Node(state, column, row)| (self.profile.state_word(state, false), column, row));
+        let aborted =
+            self.aborted.map(|(column, row)| (self.profile.state_word(NavState::Idle, true), column, row));
+        for (name, column, row) in states.chain(aborted) {
+            if name == active {
                 // The ends mark the state on terminals without reverse video.
                 let ends = Style::new().fg(theme.colour(Role::Active));
                 put(column.saturating_sub(1), row, "▐", ends);
@@ -82,7 +93,8 @@ mod tests {
     fn text(diagram: &Diagram, active: NavState, last: Option<(NavState, NavState)>) -> Vec<String> {
         let area = Rect::new(0, 0, diagram.width, diagram.height);
         let mut buffer = Buffer::empty(area);
-        diagram.draw(&Theme::default(), active, last, area, &mut buffer);
+        let nav = NavTelemetry { state: active, ..NavTelemetry::default() };
+        diagram.draw(&Theme::default(), &nav, last, area, &mut buffer);
         (0..area.height)
             .map(|y| {
                 (0..area.width).map(|x| buffer[(x, y)].symbol()).collect::<String>().trim_end().to_owned()
@@ -158,6 +170,20 @@ mod tests {
             " FIGURE8  COMPLETE ◄─┘",
         ];
         assert_eq!(text(&LOW, Orbiting, None), expected);
+    }
+
+    #[test]
+    fn the_drawing_of_master() {
+        let expected = [
+            " IDLE ► TARGETING ◄──┐",
+            "       ╱   ▼         │",
+            "      │▐HOLDING▌─────┤",
+            "      │    ▼         │",
+            "      └►LANDING      │",
+            "           ▼         │",
+            " ABORTED  COMPLETE ◄─┘",
+        ];
+        assert_eq!(text(&MASTER, Orbiting, None), expected);
     }
 
     #[test]

@@ -319,7 +319,7 @@ impl Flight {
         let share = self.controllers.land.tilt_share();
         (out.roll_rad, out.pitch_down_rad) = (share * out.roll_rad, share * out.pitch_down_rad);
         let t = self.t();
-        for event in self.nav.drain_events() {
+        while let Some(event) = self.nav.take_event() {
             if event == NavEvent::Disarm {
                 self.disarmed = true;
             }

@@ -364,6 +364,8 @@ fn more_of_it_has_more_of_the_effect() {
     let mut tested: Vec<&str> = UNUSED.to_vec();
     // The parameter has its effect after a mission, in the holds of the firmware, and is tested there.
     tested.push("ap_throttle_deadband");
+    // It chooses another navigator; the scenarios of master test it.
+    tested.push("ap_profile");
     let mut wrong = Vec::new();
     for (name, values, rises, effect) in effects() {
         tested.push(name);

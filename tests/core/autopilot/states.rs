@@ -157,8 +157,14 @@ struct Run {
 impl Run {
     fn happen(&mut self, what: &Happening, update: u32) {
         let flight = &mut self.flight;
-        let rescue =
-            Rescue { altitude_m: 40.0, climb_mps: 5.0, speed_mps: 8.0, descend_mps: 2.0, is_watched: true };
+        let rescue = Rescue {
+            altitude_m: 40.0,
+            near_climb_m: None,
+            climb_mps: 5.0,
+            speed_mps: 8.0,
+            descend_mps: 2.0,
+            is_watched: true,
+        };
         self.heals_at = update + HEALS;
         // A refused command is allowed here.
         match what {

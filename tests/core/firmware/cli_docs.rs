@@ -4,20 +4,23 @@ use std::fmt::Write as _;
 use std::path::Path;
 
 use betadeck_core::firmware::settings::{Kind, Role, SETTINGS, Scope, Setting, group_of, needs_restart};
+use betadeck_core::telemetry::FirmwareProfile;
 
 const INTRODUCTION: &str = "# Settings
 
 Every setting of the vehicle, in the order of `dump`. `get NAME` shows a setting with its range, `set NAME = VALUE`
 changes it, `save` keeps it.
 
-*Live* settings change the behaviour of the vehicle or the values it reports. *Carried* settings are checked, stored and
-printed, so that the configuration of a real craft stays complete, but they have no effect here. `get` says so for those
-of the autopilot. A change takes effect at the next control step. Settings marked ↻ need `save`, which restarts the
+*Live* settings change the behaviour of the vehicle or the values it reports. Settings marked *guide* or *master* do so in
+that profile of the autopilot only (`ap_profile`, [autopilot.md](autopilot.md#the-profile-master)), and are carried in
+the other one. *Carried* settings are checked, stored and printed, so that the configuration of a real craft stays
+complete, but they have no effect here. `get` says so for those of the autopilot. A change takes effect at the next control step. Settings marked ↻ need `save`, which restarts the
 firmware. Until then arming is blocked (REBOOT_REQD).
 
 Names from other builds and releases are accepted too. Such a line is kept unchanged, and `dump` and `diff` print it
 again. A value that current Betaflight refuses (`ap_position_cutoff` outside 10…50, `ap_velocity_drag_coeff` outside
-0…100) is accepted with a notice.
+0…100) is accepted with a notice. In the profile `master` it is refused, and the defaults of `ap_altitude_p` and
+`ap_altitude_i` are 30.
 ";
 
 fn values(setting: &Setting) -> String {
@@ -82,5 +85,7 @@ fn every_setting_is_described_in_one_sentence() {
         assert!(!help.contains(['|', '\n']), "{}", setting.name);
     }
     let count = |role: Role| SETTINGS.iter().filter(|setting| setting.role == role).count();
-    assert_eq!((count(Role::Live), count(Role::Carry)), (249, 171));
+    assert_eq!((count(Role::Live), count(Role::Carry)), (229, 162));
+    let only = |profile| count(Role::Only(profile));
+    assert_eq!((only(FirmwareProfile::Guide), only(FirmwareProfile::Master)), (21, 9));
 }

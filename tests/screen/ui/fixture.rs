@@ -258,6 +258,7 @@ pub(crate) fn view(flight: &SimpleFlight) -> SessionView {
     }
     snapshot.stored_plan = Some(plan);
     snapshot.settings = Some(SettingsView {
+        profile: betadeck::telemetry::FirmwareProfile::Guide,
         arrival_radius_m: 5.0,
         hold_radius_m: 2.0,
         orbit_radius_m: 10.0,

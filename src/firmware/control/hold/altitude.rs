@@ -274,7 +274,7 @@ pub enum DescentRate {
 
 impl DescentRate {
     /// Returns the sink rate at an altitude, m/s.
-    fn at(self, altitude_m: f64, params: &Params) -> f64 {
+    pub fn at(self, altitude_m: f64, params: &Params) -> f64 {
         match self {
             // The craft searches for the ground at the rate of a landing.
             Self::Failsafe if altitude_m < LAST_METRES_M => params.descent_rate_mps(),
@@ -293,7 +293,7 @@ impl DescentRate {
 }
 
 /// Returns the share of the climb rate that the throttle stick demands, −1…1; zero about the hover throttle.
-fn climb_share(stick_us: f64, hover_us: f64, tuning: &HoldTuning) -> f64 {
+pub(super) fn climb_share(stick_us: f64, hover_us: f64, tuning: &HoldTuning) -> f64 {
     if stick_us < tuning.low_us {
         return 0.0;
     }

@@ -40,15 +40,10 @@ impl PositionHold {
             self.is_on = true;
         }
         let limit = controller.max_tilt_rad(params);
-        let stick = Vector2::new(
-            share(now.stick_pitch, tuning.stick_deadband),
-            share(now.stick_roll, tuning.stick_deadband),
-        );
-        if stick != Vector2::zeros() {
+        if let Some(tilt) = tuning.stick_tilt(now, limit) {
             self.point = None;
             controller.track(&measured, now.dt);
-            let tilt = stick.cap_magnitude(1.0) * limit;
-            return TiltDemand { pitch_down_rad: tilt.x, roll_rad: tilt.y };
+            return tilt;
         }
         let point = *self.point.get_or_insert_with(|| stopping_point(now, params));
         let target = PositionTarget::stay(point, params);
@@ -65,7 +60,7 @@ fn stopping_point(now: &NavInputs, params: &Params) -> Vector2<f64> {
 }
 
 /// Returns the stick deflection beyond the deadband as a share of the rest, −1…1.
-fn share(stick: f64, deadband: f64) -> f64 {
+pub(super) fn share(stick: f64, deadband: f64) -> f64 {
     let deflection = stick.abs() / FULL_STICK;
     if deflection <= deadband {
         return 0.0;

@@ -4,6 +4,7 @@ use super::super::{Kind, Role, Scope, Setting, Width};
 use super::{Group, row};
 use crate::autopilot::Params;
 use crate::autopilot::params::{Effect, Field};
+use crate::telemetry::FirmwareProfile;
 
 /// The number of settings in this group. The parameters after them belong to other groups.
 const COUNT: usize = Params::FIELDS.len() - Params::SHARED;
@@ -39,7 +40,8 @@ const fn setting_of(field: &Field) -> Setting {
     };
     let role = match field.effect {
         Effect::Live => Role::Live,
-        Effect::Stored => Role::Carry,
+        Effect::Guide => Role::Only(FirmwareProfile::Guide),
+        Effect::Master => Role::Only(FirmwareProfile::Master),
     };
     row(field.name, width, kind, role, field.help)
 }

@@ -6,8 +6,8 @@ use ratatui::widgets::canvas::{Context, Line as CanvasLine};
 
 use crate::flight::sweep::Fate;
 use crate::plan::{Approach, HoldPattern, Waypoint};
-use crate::telemetry::NavTelemetry;
 use crate::telemetry::snapshot::SettingsView;
+use crate::telemetry::{FirmwareProfile, GuardName, NavTelemetry};
 use crate::ui::acts::origin::origin;
 use crate::ui::acts::viewport::Viewport;
 use crate::ui::model::map_point::{MapPoint, to_map};
@@ -259,6 +259,10 @@ fn figure(
         (Approach::Level | Approach::Stop | Approach::Climb, _) => {
             painter.circle(spot.place, settings.hold_radius_m, false);
         }
+        (Approach::Turn | Approach::Pass, _) if settings.profile == FirmwareProfile::Master => {
+            let gate_m = gate_m(state).filter(|_| scene.current == Some(spot.index));
+            painter.circle(spot.place, gate_m.unwrap_or(settings.arrival_radius_m), false);
+        }
         (Approach::Turn, _) => {
             let previous = at.checked_sub(1).map_or(scene.home, |before| scene.spots[before].place);
             match scene.spots.get(at + 1) {
@@ -272,6 +276,12 @@ fn figure(
         (Approach::Pass, _) => painter.circle(spot.place, settings.arrival_radius_m, false),
         (Approach::Modify(_), _) => {}
     }
+}
+
+/// Returns the radius within which the current waypoint of a leg of master is reached, m.
+fn gate_m(state: &Shared) -> Option<f64> {
+    let guards = &state.view.vehicle.nav.as_ref()?.guards;
+    guards.iter().find(|guard| guard.name == GuardName::Gate).map(|guard| guard.limit)
 }
 
 /// Returns the turn radius at the speed of the leg, m.

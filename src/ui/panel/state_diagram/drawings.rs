@@ -1,15 +1,19 @@
-//! The three drawings of the state machine, for panels of different sizes.
+//! The drawings of the state machine: of the guide three, for panels of different sizes, and one of master.
 
-use crate::telemetry::NavState;
 use crate::telemetry::NavState::{Approaching, Arrived, Complete, Figure8, Holding, Idle, Landing, Orbiting};
+use crate::telemetry::{FirmwareProfile, NavState};
 
 use super::{Diagram, Edge, Node};
 
 const HOLDS: &[NavState] = &[Holding, Orbiting, Figure8];
+/// ARRIVED lasts for one update, and master has no name for it.
+const APPROACHES: &[NavState] = &[Approaching, Arrived];
 
 pub(crate) static FULL: Diagram = Diagram {
     width: 36,
     height: 11,
+    profile: FirmwareProfile::Guide,
+    aborted: None,
     nodes: &[
         Node(Idle, 16, 0),
         Node(Approaching, 12, 2),
@@ -76,6 +80,8 @@ pub(crate) static FULL: Diagram = Diagram {
 pub(crate) static COMPACT: Diagram = Diagram {
     width: 21,
     height: 10,
+    profile: FirmwareProfile::Guide,
+    aborted: None,
     nodes: &[
         Node(Idle, 1, 0),
         Node(Approaching, 1, 2),
@@ -111,6 +117,8 @@ pub(crate) static COMPACT: Diagram = Diagram {
 pub(crate) static LOW: Diagram = Diagram {
     width: 22,
     height: 7,
+    profile: FirmwareProfile::Guide,
+    aborted: None,
     nodes: &[
         Node(Idle, 1, 0),
         Node(Approaching, 8, 0),
@@ -138,5 +146,55 @@ pub(crate) static LOW: Diagram = Diagram {
         },
         Edge { from: &[Holding], to: &[Landing], strokes: &[(9, 4, "►")] },
         Edge { from: &[Landing], to: &[Complete], strokes: &[(14, 5, "▼")] },
+    ],
+};
+
+/// The states of master and the main transitions.
+pub(crate) static MASTER: Diagram = Diagram {
+    width: 22,
+    height: 7,
+    profile: FirmwareProfile::Master,
+    aborted: Some((1, 6)),
+    nodes: &[
+        Node(Idle, 1, 0),
+        Node(Approaching, 8, 0),
+        Node(Holding, 8, 2),
+        Node(Landing, 8, 4),
+        Node(Complete, 10, 6),
+    ],
+    edges: &[
+        Edge { from: &[Idle, Complete], to: &[Approaching], strokes: &[(6, 0, "►")] },
+        Edge { from: APPROACHES, to: &[Approaching], strokes: &[(18, 0, "◄──┐"), (21, 1, "│")] },
+        Edge { from: APPROACHES, to: HOLDS, strokes: &[(11, 1, "▼")] },
+        Edge {
+            from: APPROACHES,
+            to: &[Landing],
+            strokes: &[(7, 1, "╱"), (6, 2, "│"), (6, 3, "│"), (6, 4, "└►")],
+        },
+        Edge {
+            from: APPROACHES,
+            to: &[Complete],
+            strokes: &[
+                (18, 0, "◄──┐"),
+                (21, 1, "│"),
+                (21, 2, "┤"),
+                (21, 3, "│"),
+                (21, 4, "│"),
+                (21, 5, "│"),
+                (19, 6, "◄─┘"),
+            ],
+        },
+        Edge {
+            from: HOLDS,
+            to: &[Approaching],
+            strokes: &[(16, 2, "─────┤"), (21, 1, "│"), (18, 0, "◄──┐")],
+        },
+        Edge {
+            from: HOLDS,
+            to: &[Complete],
+            strokes: &[(16, 2, "─────┤"), (21, 3, "│"), (21, 4, "│"), (21, 5, "│"), (19, 6, "◄─┘")],
+        },
+        Edge { from: HOLDS, to: &[Landing], strokes: &[(11, 3, "▼")] },
+        Edge { from: &[Landing], to: &[Complete], strokes: &[(11, 5, "▼")] },
     ],
 };

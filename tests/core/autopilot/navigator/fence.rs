@@ -63,7 +63,7 @@ fn a_plan_outside_the_fence_is_refused_once_with_its_distance() {
         assert!(matches!(refusal, Refusal::Geofence { wp: 0, distance_cm: 14_990..=15_010, limit_m: 100 }));
     }
     assert_eq!(nav.state(), NavState::Idle);
-    assert_eq!(nav.drain_events().count(), 1);
+    assert_eq!(std::iter::from_fn(|| nav.take_event()).count(), 1);
     nav.update(&inputs(), &params, &stored, &mut controllers);
     assert!(nav.telemetry().refusal.is_some());
 }

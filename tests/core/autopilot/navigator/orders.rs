@@ -32,8 +32,14 @@ fn a_rescue_climbs_first() {
     let hold = [waypoint(Hold, 60.0, 0.0, 20.0, 5.0)];
     let mut flight = Flight::new(guide(), &hold, 20.0).launch();
     assert!(flight.until(60.0, |f| f.nav.state() == NavState::Holding));
-    let rescue =
-        Rescue { altitude_m: 45.0, climb_mps: 3.0, speed_mps: 7.5, descend_mps: 1.5, is_watched: true };
+    let rescue = Rescue {
+        altitude_m: 45.0,
+        near_climb_m: None,
+        climb_mps: 3.0,
+        speed_mps: 7.5,
+        descend_mps: 1.5,
+        is_watched: true,
+    };
     flight.nav.return_to_home(&flight.inputs, &flight.params, Some(rescue)).unwrap();
     let began = flight.t();
     flight.run(1.0);

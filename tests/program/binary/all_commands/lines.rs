@@ -9,6 +9,7 @@ pub(super) const GROUP: Group = Group {
     steps: &[
         Again("sim.pause", Shows("‖")),
         Line("set", "ap_max_angle=33", Shows("ap_max_angle set to 33")),
+        Line("profile", "master", Shows("ap_profile set to MASTER")),
         Line("cli", "version", Shows("Betaflight")),
         Again("app.back", Hides("▸5 CLI")),
         Line("save", "mine.toml", Shows("Saved mine.toml")),

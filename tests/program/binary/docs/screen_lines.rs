@@ -5,7 +5,7 @@ use super::filled_in;
 use crate::binary::pty::Terminal;
 
 /// The beginning of a line, and the words on the screen after it was carried out.
-const CARRIED_OUT: [(&str, &str); 19] = [
+const CARRIED_OUT: [(&str, &str); 20] = [
     (":allow-changes", "changes need no permission"),
     (":arm", "● ARMED"),
     (":backdrop field.geojson", "is under the plan: 10 vertices"),
@@ -15,6 +15,7 @@ const CARRIED_OUT: [(&str, &str); 19] = [
     (":flight.home", "Nothing to bring home"),
     (":layout save ", "kept for this run only"),
     (":log ", "No log was written: the craft was not armed"),
+    (":profile ", "ap_profile set to "),
     (":record ", "so far is recorded as"),
     (":scenario ", "The flight is written as"),
     (":set ap_l1_enable=OFF", "ap_l1_enable set to OFF"),

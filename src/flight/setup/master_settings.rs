@@ -20,7 +20,7 @@ const REPLACED: [Replaced; 3] = [
 ];
 
 /// Returns the replacement `NAME = VALUE` for a setting of the guide. Other values are the user's choice.
-pub(super) fn replacement(setting: &str) -> Option<String> {
+pub fn replacement(setting: &str) -> Option<String> {
     let (name, value) = setting.split_once('=')?;
     let (name, value) = (name.trim(), value.trim());
     let replaced = REPLACED
@@ -42,7 +42,7 @@ pub fn replace_settings(settings: &mut [String]) -> Vec<String> {
 }
 
 /// Returns the notice that these settings replaced the guide's; `None` if there are none.
-pub(super) fn replaced_reported(settings: &[String]) -> Option<String> {
+pub fn replaced_reported(settings: &[String]) -> Option<String> {
     (!settings.is_empty()).then(|| {
         format!(
             "This firmware falls in LAND with the guide's altitude gains and refuses its position cutoff, so it gets {} \
