@@ -69,10 +69,13 @@ pub(super) fn run(args: &OpenArgs, keymap: Keymap) -> Result<u8, AppError> {
     if let Some(recording) = of_recording::read(args)? {
         return of_recording::run(args, &recording, keymap);
     }
-    let Opened { case, air, name, firmware, wanted } = match of_campaign::read(args)? {
+    let Opened { mut case, air, name, firmware, wanted } = match of_campaign::read(args)? {
         Some(opened) => opened,
         None => of_scenario(args, &mut notices)?,
     };
+    if let Some(profile) = args.profile {
+        case.use_profile(profile);
+    }
     let flown = match &firmware {
         None => fly(&case, &air)?,
         Some(firmware) => {

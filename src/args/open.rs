@@ -4,6 +4,7 @@ use std::path::PathBuf;
 
 use super::firmware::{FirmwareArgs, FirmwarePortArgs};
 use super::{DisplayArgs, value};
+use crate::telemetry::FirmwareProfile;
 
 /// The options of `open`.
 #[derive(Debug, Clone, PartialEq, clap::Args)]
@@ -23,6 +24,10 @@ pub struct OpenArgs {
     /// The seed [default: the case's first]
     #[arg(long, value_name = "N", allow_negative_numbers = true, value_parser = value::seed)]
     pub seed: Option<u64>,
+
+    /// Laws of the embedded autopilot: guide, master [default: the scenario's, else guide]
+    #[arg(long, value_name = "NAME", hide_possible_values = true, value_parser = value::profile, conflicts_with = "firmware")]
+    pub profile: Option<FirmwareProfile>,
 
     /// Lets a scenario name files that are not in its folder: plans, settings, airframes
     #[arg(long)]

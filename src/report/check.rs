@@ -58,8 +58,8 @@ pub struct CheckedFlight {
     pub reported: Insight,
     /// `true` if a remote flight controller flew.
     pub is_remote: bool,
-    /// The options of `betadeck open` for a remote flight controller, with a blank before each; `None` if it cannot be
-    /// opened.
+    /// The options of `betadeck open` that choose the firmware or its laws, with a blank before each. Without them a flight of
+    /// a remote flight controller cannot be opened.
     pub firmware_options: Option<String>,
 }
 
@@ -121,7 +121,7 @@ impl CheckedFlight {
     /// cannot be started in the same way.
     pub fn open_command(&self, time: SimTime) -> Option<String> {
         let firmware = match (self.is_remote, &self.firmware_options) {
-            (false, _) => "",
+            (false, options) => options.as_deref().unwrap_or_default(),
             (true, options) => options.as_deref()?,
         };
         let case =

@@ -15,6 +15,7 @@ use crate::scenario::{
     self, BuiltinFiles, BuiltinScenario, Files, Flights, MISSION, Request, SCENARIOS, Scenario, mission,
     mission_number, read_request,
 };
+use crate::telemetry::FirmwareProfile;
 
 #[derive(Debug)]
 pub(super) struct Loaded {
@@ -26,6 +27,8 @@ pub(super) struct Loaded {
     pub(super) left_out: usize,
     /// `true` if the seeds come from the command line.
     pub(super) seeds_are_given: bool,
+    /// The laws of the embedded firmware from the command line.
+    pub(super) profile: Option<FirmwareProfile>,
 }
 
 /// The source of a scenario.
@@ -44,6 +47,7 @@ pub(super) fn load(args: &CheckArgs) -> Result<Loaded, AppError> {
         files: Vec::new(),
         left_out: 0,
         seeds_are_given: args.seeds.is_some(),
+        profile: args.profile,
     };
     let mut problems = Vec::new();
     let seeds = args.seeds.as_ref().map(|seeds| seeds.0.as_slice());

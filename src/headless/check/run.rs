@@ -191,6 +191,7 @@ impl Job {
             seeds: case.airs.len(),
             seed_is_given: loaded.seeds_are_given,
             repetition: self.repetition,
+            firmware_options: loaded.profile.map(|profile| format!(" --profile {profile}")),
             ..CheckedFlight::default()
         })
     }

@@ -76,7 +76,7 @@ impl Pair<'_> {
             seed: air.seed,
             seeds: case.airs.len(),
             seed_is_given: self.programme.has_own_seeds(),
-            is_remote: matches!(build, Build::Executable(_)),
+            is_remote: true,
             firmware_options: build.options_to_open().filter(|_| can_open),
             ..CheckedFlight::default()
         };
@@ -122,7 +122,8 @@ impl Build {
     /// Returns the options of `betadeck open` that fly with the same build, as text with a blank before each.
     fn options_to_open(&self) -> Option<String> {
         match self {
-            Self::Embedded => Some(" --profile master".to_owned()),
+            // It has the guide's settings, too, which no option gives.
+            Self::Embedded => None,
             Self::Executable(firmware) => options_to_open(firmware),
         }
     }

@@ -37,7 +37,7 @@ pub(super) fn page(lab: &Lab, command: Option<&str>) -> String {
         rows.len()
     );
     if let Some(command) = command {
-        text.push_str(&format!("\nPrinted by\n\n```sh\n{command}\n```\n"));
+        text.push_str(&format!("\nPrinted by\n\n```text\n{command}\n```\n"));
     }
     let results = results(lab);
     if !results.is_empty() {

@@ -27,7 +27,8 @@ fn a_scenario_chooses_its_profile_and_an_option_overrides_it() {
                 profile = \"master\"\n[[expect]]\nname = \"its own laws\"\nevent = \"COMPLETE\"\nwithin = \"100..150 s after engaged\"\n";
     sandbox.write("laws.toml", text);
     sandbox.run(&["check", "laws.toml"]).exits(0);
-    sandbox.run(&["check", "laws.toml", "--profile", "guide"]).exits(1);
+    let failed = sandbox.run(&["check", "laws.toml", "--profile", "guide"]).exits(1);
+    assert!(failed.out.contains(" --profile guide"), "{}", failed.out);
     sandbox.write("wrong.toml", &text.replace("\"master\"", "\"wing\""));
     let wrong = sandbox.run(&["check", "wrong.toml"]).exits(2);
     assert!(wrong.err.contains("allowed: guide, master"), "{}", wrong.err);
