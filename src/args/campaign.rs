@@ -231,6 +231,7 @@ impl CampaignArgs {
             ("--heading", flight.heading.is_some()),
             ("--airframe", flight.airframe.is_some()),
             ("--settings", flight.settings.is_some()),
+            ("--profile", flight.profile.is_some()),
             ("--attitude", flight.attitude.is_some()),
             ("--wind", flight.wind.is_some()),
             ("--gust", flight.gust.is_some()),

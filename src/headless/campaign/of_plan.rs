@@ -37,6 +37,7 @@ pub(super) fn text(args: &CampaignArgs, plan: &PlanArg, plan_file: Option<&str>)
         craft.push(("home", quoted(&format!("{lat},{lon}{amsl}"))));
     }
     craft.extend(flight.heading.map(|heading| ("heading_deg", heading.to_string())));
+    craft.extend(flight.profile.map(|profile| ("profile", quoted(&profile.to_string()))));
     craft.extend(flight.airframe.as_ref().map(|airframe| ("airframe", quoted(airframe))));
     craft.extend(flight.attitude.map(|attitude| {
         let word = match attitude {

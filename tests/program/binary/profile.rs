@@ -35,6 +35,31 @@ fn a_scenario_chooses_its_profile_and_an_option_overrides_it() {
 }
 
 #[test]
+fn a_campaign_of_a_plan_flies_by_the_profile_and_one_of_a_scenario_refuses_it() {
+    let sandbox = Sandbox::new();
+    let campaign = |plan: &str| {
+        sandbox.run(&[
+            "campaign",
+            plan,
+            "--flights",
+            "2",
+            "--vary",
+            "wind=[\"1@0\", \"2@90\"]",
+            "--profile",
+            "master",
+        ])
+    };
+    let fallen = campaign("land").exits(1);
+    assert!(fallen.out.contains("hit the ground sinking at 12"), "{}", fallen.out);
+    sandbox.write(
+        "laws.toml",
+        "format = 1\nname = \"laws\"\ndescription = \"Laws\"\n[plan]\nbuiltin = \"land\"\n",
+    );
+    let scenario = sandbox.run(&["campaign", "laws.toml", "--flights", "2", "--profile", "master"]).exits(2);
+    assert!(scenario.err.contains("--profile"), "{}", scenario.err);
+}
+
+#[test]
 fn settings_of_master_suggest_its_profile_once() {
     let sandbox = Sandbox::new();
     sandbox.write("craft.txt", "set ap_nav_corner_speed = 300\nset ap_nav_decel = 200\n");
