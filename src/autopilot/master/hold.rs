@@ -17,7 +17,7 @@ const WAIT_S: f64 = 5.0;
 const BRAKE_MPS: f64 = 1.0;
 const BRAKE_S: f64 = 1.0;
 
-/// A pattern around the place of a HOLD.
+/// A pattern around the waypoint of a HOLD.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub(super) struct Pattern {
     /// The phase of the target, rad; `None` until it begins.

@@ -98,7 +98,7 @@ impl Line {
         way.try_normalize(1e-6).unwrap_or_default()
     }
 
-    /// Returns the place of a point along the leg and to the right of it, m.
+    /// Returns the distance of a point along the leg and its offset to the right, m.
     fn place(&self, ne: Vector2<f64>) -> (f64, f64) {
         let (direction, from_start) = (self.direction(), ne - self.start);
         (direction.dot(&from_start), direction.x * from_start.y - direction.y * from_start.x)

@@ -31,7 +31,7 @@ pub(super) struct Route {
     delay: Option<Delay>,
     /// The yaw rate by YAW_RATE, degrees/s, until the end of the mission.
     yaw_cap_dps: Option<f64>,
-    /// What is added to the altitude of a waypoint for its altitude above home, m.
+    /// The correction of all altitudes of the plan, m.
     added_m: f64,
     /// The place at which a TAKEOFF began.
     takeoff_ne: Vector2<f64>,

@@ -69,9 +69,9 @@ impl Sensing {
         if let Some(sample) = frame.battery {
             self.update_battery(sample, parameters, outbox);
         }
-        if let Some(pressure_pa) = frame.pressure_pa {
-            self.pressure_alt_m = Some(pressure_altitude_m(pressure_pa) - self.site_alt_m);
-        }
+        // A broken sample would stay in the target of a mission that begins now.
+        let altitude_m = frame.pressure_pa.map(pressure_altitude_m).filter(|altitude| altitude.is_finite());
+        self.pressure_alt_m = altitude_m.map(|altitude| altitude - self.site_alt_m).or(self.pressure_alt_m);
         self.mag_flu = frame.mag_flu.unwrap_or(self.mag_flu);
         due
     }
@@ -126,5 +126,29 @@ impl Sensing {
 
     pub(in crate::firmware) fn estimate(&self) -> &Estimate {
         self.estimator.estimate()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::firmware::config::Configuration;
+    use crate::firmware::parameters::BootChoices;
+
+    #[test]
+    fn a_pressure_that_is_no_number_leaves_the_altitude_as_it_was() {
+        let (configuration, options) = (Configuration::default(), FirmwareOptions::default());
+        let boot = BootChoices::new(&configuration);
+        let parameters = Parameters::new(&configuration, &boot, &options);
+        let mut sensing = Sensing::new(&options, &parameters);
+        let mut feel = |pressure_pa| {
+            let frame = SensorFrame { pressure_pa: Some(pressure_pa), ..SensorFrame::default() };
+            sensing.update(&frame, &parameters, &mut Outbox::default());
+            sensing.pressure_alt_m()
+        };
+        let before = feel(97_773.0);
+        assert!(before.is_some_and(|altitude| (altitude - 300.0).abs() < 1.0), "{before:?}");
+        assert_eq!(feel(f64::NAN), before);
+        assert_eq!(feel(-1.0), before);
     }
 }

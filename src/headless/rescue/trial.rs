@@ -32,7 +32,7 @@ pub(super) enum Begin {
     LinkBack,
 }
 
-/// What else is wrong.
+/// A further fault of a flight.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, strum::Display, serde::Serialize)]
 #[strum(serialize_all = "kebab-case")]
 #[serde(rename_all = "kebab-case")]

@@ -63,8 +63,8 @@ fn a_campaign_of_a_plan_flies_by_the_profile_and_one_of_a_scenario_refuses_it() 
 fn settings_of_master_suggest_its_profile_once() {
     let sandbox = Sandbox::new();
     sandbox.write("craft.txt", "set ap_nav_corner_speed = 300\nset ap_nav_decel = 200\n");
-    let told = sandbox.run(&["fly", "land", "--settings", "craft.txt"]).exits(0);
-    let all = told.out + &told.err;
+    let flown = sandbox.run(&["fly", "land", "--settings", "craft.txt"]).exits(0);
+    let all = flown.out + &flown.err;
     assert_eq!(all.matches("act in the profile master only").count(), 1, "{all}");
 }
 
