@@ -56,7 +56,7 @@ pub use config_file::{ConfigCommand, KeyHelp, Origin, origins, template};
 pub use connect::ConnectArgs;
 pub use convert::ConvertArgs;
 pub use display::{CharsetChoice, DisplayArgs, ThemeChoice, UnitsChoice};
-pub use doors::{DoorArgs, ServeArgs, SitlArgs, UdpPorts, sitl_usage_error};
+pub use doors::{DoorArgs, MavlinkIdentity, MavlinkPlace, ServeArgs, SitlArgs, UdpPorts, sitl_usage_error};
 pub use firmware::{FirmwareArgs, FirmwareChoice, FirmwareLinkArgs, FirmwarePortArgs, firmware_options};
 pub use flight::FlightArgs;
 pub use fly::FlyArgs;

@@ -12,6 +12,9 @@ pub use betadeck_core::{
 };
 
 #[doc(hidden)]
+pub use betadeck_mavlink as mavlink;
+
+#[doc(hidden)]
 pub mod app;
 #[doc(hidden)]
 pub mod args;
@@ -21,6 +24,8 @@ pub mod events;
 pub mod fc;
 #[doc(hidden)]
 pub mod files;
+#[doc(hidden)]
+pub mod ground_station;
 #[doc(hidden)]
 pub mod headless;
 #[doc(hidden)]

@@ -53,8 +53,8 @@ use crate::pilot::{FRAME_US, RcTransmitter};
 use crate::plan::FlightPlan;
 use crate::signals::{MotorCommand, Pose, RcFrame, RcSource, SensorFrame, SimTime};
 use crate::sim::{
-    Airframe, Clock, LinkFaults, Stream, StreamRng, Truth, World, WorldConfig, WorldError, WorldEventKind,
-    WorldStatus,
+    Airframe, Clock, Home, LinkFaults, Stream, StreamRng, Truth, World, WorldConfig, WorldError,
+    WorldEventKind, WorldStatus,
 };
 use crate::telemetry::{Event, EventKind, FirmwareEvent, NavEvent, NavState, VehicleNotice};
 use physics::{ExternalPhysics, Physics};
@@ -264,6 +264,36 @@ impl Vehicle {
         let Some(physics) = self.physics.again(change)? else { return Ok(None) };
         let controller = embedded(firmware.configuration().clone(), firmware.options());
         Ok(Some(Self::build(controller, physics, false)))
+    }
+
+    /// Returns a vehicle at boot whose embedded firmware has the settings that the remote one has reported, in the present
+    /// craft and air. For a real craft these are the usual ones, at the place of the craft, and the mounting of its compass
+    /// does not count. `None` if the settings or the place are unknown, or if the firmware is embedded.
+    ///
+    /// # Errors
+    /// Fails if the world cannot be built.
+    pub fn twin(&self) -> Result<Option<Self>, WorldError> {
+        let reported = self.controller.reported_configuration().cloned();
+        let (Some(mut configuration), Some(&frame)) = (reported, self.local_frame()) else {
+            return Ok(None);
+        };
+        let physics = match self.physics.again(|_| ())? {
+            Some(physics) => physics,
+            None => {
+                configuration.settings.set_number("align_mag", 0).ok();
+                let home = Home {
+                    lat_deg: frame.lat_deg,
+                    lon_deg: frame.lon_deg,
+                    alt_amsl_m: frame.alt_amsl_m,
+                    ..Home::default()
+                };
+                Physics::World(Box::new(World::new(WorldConfig { home, ..WorldConfig::default() })?))
+            }
+        };
+        configuration.starter_modes();
+        let rate_hz = (1_000_000 / physics.clock().step_us()) as u32;
+        let options = FirmwareOptions { rate_hz, site_alt_m: frame.alt_amsl_m, ..FirmwareOptions::default() };
+        Ok(Some(Self::build(embedded(configuration, options), physics, false)))
     }
 
     /// Handles the restart of a remote flight controller by itself: the craft of the simulated world is at home

@@ -7,13 +7,15 @@ use std::time::{Duration, Instant};
 use tokio::sync::watch;
 use tokio_util::sync::CancellationToken;
 
-use crate::args::{DoorArgs, FlightArgs, PhysicsArgs};
+use crate::args::{DoorArgs, FlightArgs, MavlinkIdentity, MavlinkPlace, PhysicsArgs};
 use crate::events::EndpointAddresses;
 use crate::fc::RemoteLink;
+use crate::ground_station::{BoundDoor, Door, GroundStationOptions, Place};
 use crate::launch::{FirmwarePorts, RemoteFirmware};
 use crate::link::endpoint::EndpointKind;
 use crate::link::proto::fdm_link::FdmLinkConfig;
 use crate::link::{ExternalSimulator, FcPlace, ListenConfig, Listeners};
+use crate::mavlink::craft::Identity;
 use crate::process::error::AppError;
 use crate::session::{Endpoints, Links, MotorTargets};
 
@@ -41,7 +43,8 @@ const RC_BESIDE: u16 = 11004;
 #[derive(Debug)]
 pub(super) struct OpenDoors {
     stop: CancellationToken,
-    keeper: tokio::task::JoinHandle<()>,
+    keeper: Option<tokio::task::JoinHandle<()>>,
+    ground_station: Option<Door>,
 }
 
 /// The result of opening the doors.
@@ -110,7 +113,12 @@ pub(super) async fn open(
     let (doors, endpoints, view_tx) = links.endpoints(simulator);
     let stop = CancellationToken::new();
     let keeper = tokio::spawn(keep(doors, view_tx, stop.clone()));
-    Ok(Some(Opened { doors: OpenDoors { stop, keeper }, endpoints, addresses, notices }))
+    Ok(Some(Opened {
+        doors: OpenDoors { stop, keeper: Some(keeper), ground_station: None },
+        endpoints,
+        addresses,
+        notices,
+    }))
 }
 
 /// Returns the ports of the TCP and RC doors beside a firmware on the wall clock. They are any free ones if those for it
@@ -185,9 +193,58 @@ impl OpenDoors {
     /// Closes the doors and waits until their clients are informed.
     pub(super) async fn close(self) {
         self.stop.cancel();
-        // The keeper does not panic.
-        drop(self.keeper.await);
+        if let Some(ground_station) = self.ground_station {
+            ground_station.close().await;
+        }
+        if let Some(keeper) = self.keeper {
+            // The keeper does not panic.
+            drop(keeper.await);
+        }
     }
+
+    /// Returns the doors with that of ground stations.
+    pub(super) fn with_ground_station(doors: Option<Self>, door: Option<Door>) -> Option<Self> {
+        let Some(door) = door else { return doors };
+        let without = || Self { stop: CancellationToken::new(), keeper: None, ground_station: None };
+        Some(Self { ground_station: Some(door), ..doors.unwrap_or_else(without) })
+    }
+}
+
+/// Opens the sockets of the MAVLink door, if there is one. Sentences about it are added to `notices`.
+pub(super) async fn bind_ground_station(
+    args: &DoorArgs,
+    is_real_craft: bool,
+    notices: &mut Vec<String>,
+) -> Option<BoundDoor> {
+    let place = |place: &MavlinkPlace| match *place {
+        MavlinkPlace::Udp(port) => Place::Udp(port),
+        MavlinkPlace::Tcp(port) => Place::Tcp(port),
+    };
+    let options = GroundStationOptions {
+        places: args.mavlink.iter().map(place).collect(),
+        identity: match args.mavlink_as.unwrap_or(MavlinkIdentity::Generic) {
+            MavlinkIdentity::Generic => Identity::Generic,
+            MavlinkIdentity::Ardupilot => Identity::Ardupilot,
+            MavlinkIdentity::Px4 => Identity::Px4,
+        },
+        takes_rc: args.mavlink_rc,
+        is_read_only: is_real_craft,
+    };
+    if options.places.is_empty() {
+        return None;
+    }
+    for place in &options.places {
+        if let Place::Udp(port) = place {
+            notices.push(format!("MAVLink: sends to 127.0.0.1:{port}, UDP."));
+        }
+    }
+    let (door, errors) = BoundDoor::bind(options).await;
+    notices.extend(door.listening().iter().map(|address| format!("MAVLink: listens on {address}, TCP.")));
+    notices.extend(errors.iter().map(|error| format!("{error}.")));
+    if is_real_craft {
+        notices.push("MAVLink shows this craft and changes nothing on it.".to_owned());
+    }
+    Some(door)
 }
 
 #[cfg(test)]

@@ -61,6 +61,7 @@ pub(super) async fn start(
         None => (None, None),
     };
     notices.extend(opened.iter().flat_map(OpenLink::notices));
+    let ground_station = doors::bind_ground_station(args.doors, args.connect.is_some(), &mut notices).await;
     if !args.has_screen {
         // RC comes only through the doors. Virtual sticks at rest would hide the loss of a script, or disturb one that
         // sends to a firmware on the wall clock. One in simulated time gets them until the first frame of a script.
@@ -83,6 +84,8 @@ pub(super) async fn start(
     };
     let session = session::start_at(config, flown, feed)
         .map_err(|error| AppError::environment(format!("cannot start a thread: {error}")))?;
+    let ground_station = ground_station.map(|door| door.serve(session.orders.clone(), session.view.clone()));
+    let doors = OpenDoors::with_ground_station(doors, ground_station);
     Ok((session, doors, directory.flatten()))
 }
 

@@ -32,6 +32,11 @@ const TRACK: &str = "sitl_track.gpx";
 
 /// Runs until a signal, or through a configuration file, and returns the exit code.
 pub(super) fn run(args: &SitlArgs) -> Result<u8, AppError> {
+    if !args.doors.mavlink.is_empty() {
+        let why =
+            "sitl offers no MAVLink, as the SITL executable does not: use betadeck or serve with --mavlink";
+        return Err(AppError::input(why));
+    }
     let runtime = runtime::with_threads(2)?;
     let config = config(args);
     match &args.config {
@@ -80,6 +85,7 @@ fn config(args: &SitlArgs) -> SitlConfig {
             ..FdmLinkConfig::default()
         },
         motor_order: args.simulator.motor_order.unwrap_or_default(),
+        profile: args.profile,
         exit_on_reboot: args.exit_on_reboot,
     }
 }
@@ -159,6 +165,7 @@ fn apply(args: &SitlArgs, file: &Path, text: &str) -> Result<u8, AppError> {
     let loaded = store.load();
     loaded.findings.into_iter().for_each(|finding| say(OutputLine::Err(finding)));
     let mut configuration = loaded.configuration;
+    args.profile.into_iter().for_each(|profile| configuration.settings.set_profile(profile));
     say(OutputLine::Out(format!("[CONFIG] Processing config file: {}", file.display())));
     let facts = CliFacts { storage: store.facts(), ..CliFacts::default() };
     let mut context = CliContext { configuration: &mut configuration, facts: &facts };

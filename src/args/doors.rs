@@ -7,8 +7,9 @@ use std::str::FromStr;
 use clap::error::{ContextKind, ContextValue, ErrorKind};
 
 use super::physics::{PhysicsArgs, SimulatorArgs};
-use super::value::{AttitudeChoice, OnOff, OutputFile};
+use super::value::{self, AttitudeChoice, OnOff, OutputFile};
 use super::{FirmwareArgs, FlightArgs};
+use crate::telemetry::FirmwareProfile;
 
 /// The addresses of the doors; port 0 = the system chooses.
 #[derive(Debug, Clone, Default, PartialEq, Eq, clap::Args)]
@@ -32,6 +33,33 @@ pub struct DoorArgs {
     /// Opens only the doors for an external simulator
     #[arg(long, conflicts_with_all = ["listen", "ws_port", "tcp_port", "udp_ports"], help_heading = "Doors")]
     pub no_ports: bool,
+
+    /// MAVLink for other ground stations: udp:PORT where one listens, tcp:PORT to listen [default: none]
+    ///
+    /// QGroundControl, MAVProxy and MAVSDK listen on UDP 14550; Mission Planner connects to TCP 5760. Only this machine
+    /// is served.
+    #[arg(
+        long,
+        value_name = "PLACES",
+        value_delimiter = ',',
+        conflicts_with = "no_ports",
+        help_heading = "Doors"
+    )]
+    pub mavlink: Vec<MavlinkPlace>,
+
+    /// What the craft claims to be there: generic, ardupilot, px4 [default: generic]
+    #[arg(
+        long,
+        value_name = "NAME",
+        hide_possible_values = true,
+        requires = "mavlink",
+        help_heading = "Doors"
+    )]
+    pub mavlink_as: Option<MavlinkIdentity>,
+
+    /// Takes the sticks of MAVLink ground stations, as RC of a script
+    #[arg(long, requires = "mavlink", help_heading = "Doors")]
+    pub mavlink_rc: bool,
 
     /// Serves web pages of this origin on the websocket, too; repeatable
     ///
@@ -61,6 +89,38 @@ impl DoorArgs {
     /// Returns the UDP ports.
     pub fn udp_ports(&self) -> UdpPorts {
         self.udp_ports.unwrap_or_default()
+    }
+}
+
+/// The autopilot that the craft claims to be.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, clap::ValueEnum)]
+pub enum MavlinkIdentity {
+    Generic,
+    Ardupilot,
+    Px4,
+}
+
+/// A place where MAVLink ground stations meet the craft.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum MavlinkPlace {
+    /// Sends to this port of the loopback, from a port of its own.
+    Udp(u16),
+    /// Listens on this port; 0 = any free one.
+    Tcp(u16),
+}
+
+impl FromStr for MavlinkPlace {
+    type Err = String;
+
+    fn from_str(text: &str) -> Result<Self, String> {
+        let wrong = || format!("{text} is no place: write udp:PORT or tcp:PORT, such as udp:14550");
+        let (transport, port) = text.trim().split_once(':').ok_or_else(wrong)?;
+        let port = port.parse().map_err(|_| wrong())?;
+        match transport {
+            "udp" if port != 0 => Ok(Self::Udp(port)),
+            "tcp" => Ok(Self::Tcp(port)),
+            _ => Err(wrong()),
+        }
     }
 }
 
@@ -161,6 +221,10 @@ pub struct SitlArgs {
     #[arg(long, value_enum, help_heading = "Firmware")]
     pub arm_assist: Option<OnOff>,
 
+    /// Laws of the autopilot, stored as ap_profile: guide, master [default: the stored ones, at first guide]
+    #[arg(long, value_name = "NAME", hide_possible_values = true, value_parser = value::profile, help_heading = "Firmware")]
+    pub profile: Option<FirmwareProfile>,
+
     /// Source of the attitude: the simulator's packet (truth), or the firmware's estimator [default: truth]
     #[arg(long, value_enum, help_heading = "Firmware")]
     pub attitude: Option<AttitudeChoice>,
@@ -191,6 +255,16 @@ mod tests {
     use clap::Parser;
 
     use super::*;
+
+    #[test]
+    fn places_of_ground_stations_are_read_and_others_are_refused_with_an_example() {
+        assert_eq!("udp:14550".parse(), Ok(MavlinkPlace::Udp(14550)));
+        assert_eq!(" tcp:0".parse(), Ok(MavlinkPlace::Tcp(0)));
+        for wrong in ["14550", "udp:0", "udp:70000", "serial:1", "tcp:", ""] {
+            let error = wrong.parse::<MavlinkPlace>().unwrap_err();
+            assert!(error.contains("udp:14550"), "{wrong}: {error}");
+        }
+    }
 
     #[derive(Debug, Parser)]
     #[command(name = "x")]

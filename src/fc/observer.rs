@@ -197,6 +197,7 @@ impl Observer {
             craft,
             nav: reported.map(|nav| self.events.completed(nav, armed)),
             settings: self.settings.view(),
+            configuration: self.settings.configuration(),
             stored_plan,
             altitude_reference,
             last_disarm: self.events.last_disarm(),

@@ -243,6 +243,7 @@ impl Remote {
             state: self.state(),
             access: self.access(),
             has_plans: self.observer.has_plans(),
+            knows_settings: self.observer.knows_settings(),
             opens_cli: self.opens_cli(),
             in_cli: self.client.is_in_cli(),
             connection: self.connection(),

@@ -31,6 +31,8 @@ pub struct RemoteView {
     pub access: Access,
     /// `true` if it is known to store and fly plans.
     pub has_plans: bool,
+    /// `true` if the settings of its autopilot are known, with which estimates fly.
+    pub knows_settings: bool,
     /// `true` if its command line has no framing: a line opens it, and it stays open.
     pub opens_cli: bool,
     /// `true` while its command line is open, which suspends telemetry.

@@ -30,6 +30,7 @@ use crate::autopilot::io::NavInputs;
 use crate::geo::{LatLon, offset_to_latlon};
 use crate::signals::SimTime;
 
+mod alignment;
 mod attitude;
 mod calibration;
 mod compass;

@@ -221,6 +221,10 @@ impl ForecastRun {
     }
 }
 
+/// The reason why there are no estimates of a plan with a remote flight controller.
+pub const SETTINGS_UNKNOWN: &str =
+    "The settings of the remote autopilot or the place of its craft are not known: there is no estimate yet.";
+
 /// The reason why there are no forecasts with a remote flight controller.
 pub const CONTROLLER_IS_REMOTE: &str =
     "The flight controller is another program, which cannot be copied: there is no forecast of its flight.";

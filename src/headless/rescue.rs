@@ -21,7 +21,10 @@ use trial::{Craft, Flown, Trial};
 
 /// Settings that are tried when flights fail, each with the reason.
 const MENDS: [(&str, &[&str]); 6] = [
-    ("a landing that does not fall", &["ap_altitude_p = 2", "ap_altitude_d = 200"]),
+    (
+        "a landing that does not fall",
+        &["ap_altitude_p = 2", "ap_altitude_d = 200", "gps_rescue_descend_rate = 50"],
+    ),
     ("a slower descent", &["gps_rescue_descend_rate = 75", "ap_landing_descent_rate = 30"]),
     ("more speed against the wind", &["gps_rescue_ground_speed = 1500", "ap_max_angle = 50"]),
     ("more height on the way", &["gps_rescue_initial_climb = 30", "gps_rescue_return_alt = 50"]),

@@ -97,8 +97,13 @@ fn waypoints(draw: &mut Draw) -> Vec<String> {
                 _ => format!("YAW_RATE {}", draw.between(15, 60)),
             };
             let (kind, value) = modifier.split_once(' ').unwrap_or_default();
-            let (alt_cm, duration) = if kind == "ALT_CHANGE" { (value, "0") } else { ("0", value) };
-            lines.push(line([north, east], alt_cm, "0", kind, duration, "ORBIT"));
+            // YAW_RATE has its rate in the place of the speed.
+            let (alt_cm, speed, duration) = match kind {
+                "ALT_CHANGE" => (value, "0", "0"),
+                "YAW_RATE" => ("0", value, "0"),
+                _ => ("0", "0", value),
+            };
+            lines.push(line([north, east], alt_cm, speed, kind, duration, "ORBIT"));
         }
         let speed = if has_speeds { 100 * draw.between(3, 9) } else { 500 };
         let is_hold = has_hold && leg + 1 == count;
@@ -174,6 +179,15 @@ mod tests {
         assert_eq!(mission_number("lab-mission-"), None);
         assert_eq!(mission_number("lab-mission-01"), None);
         assert_eq!(mission_number("square"), None);
+    }
+
+    #[test]
+    fn a_yaw_rate_of_a_mission_limits_the_rate() {
+        let texts: Vec<String> = (0..200).map(mission).collect();
+        let lines: Vec<&str> =
+            texts.iter().flat_map(|text| text.lines()).filter(|line| line.contains("YAW_RATE")).collect();
+        let rates = lines.iter().filter_map(|line| line.split_whitespace().nth(3)?.parse().ok());
+        assert!(!lines.is_empty() && rates.filter(|rate| (15..=60).contains(rate)).count() == lines.len());
     }
 
     #[test]

@@ -60,6 +60,11 @@ impl CommandQueue {
         self.is_idle
     }
 
+    /// Returns `true` if the thread may sleep, also because there will be no more commands.
+    pub(super) fn is_silent(&self) -> bool {
+        self.is_idle || self.has_ended
+    }
+
     /// Returns the number of commands that were taken.
     pub(super) fn taken(&self) -> u64 {
         self.taken

@@ -7,7 +7,7 @@ use super::command::{Command, SessionView};
 use crate::fc::{
     Access, Denial, Impact, NOTHING_MOVES, NOTHING_SIMULATED, RemoteState, RemoteView, UploadView,
 };
-use crate::flight::forecast::{CONTROLLER_IS_REMOTE, PHYSICS_IS_EXTERNAL};
+use crate::flight::forecast::{CONTROLLER_IS_REMOTE, PHYSICS_IS_EXTERNAL, SETTINGS_UNKNOWN};
 use crate::telemetry::LinkState;
 use crate::vehicle::{CommandKind, VehicleCommand};
 
@@ -83,6 +83,8 @@ pub struct RemoteFacts {
     /// `true` if it has reported its identity and settings.
     is_ready: bool,
     has_plans: bool,
+    /// `true` if estimates can fly with its settings.
+    knows_settings: bool,
     /// `true` if a line would have to open its command line, which is itself a change.
     opens_cli: bool,
     /// `true` if its time is that of the session.
@@ -91,8 +93,9 @@ pub struct RemoteFacts {
 
 impl From<&RemoteView> for RemoteFacts {
     fn from(remote: &RemoteView) -> Self {
-        let &RemoteView { has_plans, opens_cli, is_in_steps, .. } = remote;
-        Self { is_ready: remote.state == RemoteState::Ready, has_plans, opens_cli, is_in_steps }
+        let &RemoteView { has_plans, knows_settings, opens_cli, is_in_steps, .. } = remote;
+        let is_ready = remote.state == RemoteState::Ready;
+        Self { is_ready, has_plans, knows_settings, opens_cli, is_in_steps }
     }
 }
 
@@ -293,7 +296,9 @@ const RULES: [Rule; 17] = [
     (PLACE_IS_EXTERNAL, |facts, intent| {
         intent == Intent::Reset && facts.simulator == Some(LinkState::Flowing)
     }),
-    (CONTROLLER_IS_REMOTE, |facts, intent| intent == Intent::Forecast && facts.remote.is_some()),
+    (SETTINGS_UNKNOWN, |facts, intent| {
+        intent == Intent::Forecast && facts.remote.is_some_and(|remote| !remote.knows_settings)
+    }),
     (CONTROLLER_IS_REMOTE, |facts, intent| {
         let can_fly_ahead = |remote: RemoteFacts| remote.is_in_steps && facts.is_recorded;
         intent == Intent::FlyAhead && facts.remote.is_some_and(|remote| !can_fly_ahead(remote))

@@ -72,7 +72,7 @@ pub fn start_replay(config: ReplayConfig) -> std::io::Result<Handle> {
     let (view_tx, view_rx) = watch::channel(session.view());
     let thread =
         std::thread::Builder::new().name("replay".to_owned()).spawn(move || session.run(&view_tx))?;
-    Ok(Handle { commands: command_tx, view: view_rx, events: event_rx, thread })
+    Ok(Handle { commands: command_tx, orders: mpsc::channel(1).0, view: view_rx, events: event_rx, thread })
 }
 
 struct ReplaySession {

@@ -105,6 +105,8 @@ pub struct FlownBefore {
 #[derive(Debug)]
 pub struct Handle {
     pub commands: mpsc::Sender<Command>,
+    /// Commands of other programs, which do not count in [`SessionView::commands_taken`].
+    pub orders: mpsc::Sender<Command>,
     pub view: watch::Receiver<SessionView>,
     /// Every event, in order.
     pub events: mpsc::UnboundedReceiver<Event>,
@@ -137,12 +139,14 @@ pub fn start_at(
     feed: Option<FlightFeed>,
 ) -> std::io::Result<Handle> {
     let (command_tx, command_rx) = mpsc::channel(256);
+    let (order_tx, order_rx) = mpsc::channel(64);
     let (event_tx, event_rx) = mpsc::unbounded_channel();
     let mut session = Session::new(config, flown, feed, (command_rx, event_tx));
+    session.orders = CommandQueue::new(order_rx);
     let (view_tx, view_rx) = watch::channel(session.view());
     let thread =
         std::thread::Builder::new().name("vehicle".to_owned()).spawn(move || session.run(&view_tx))?;
-    Ok(Handle { commands: command_tx, view: view_rx, events: event_rx, thread })
+    Ok(Handle { commands: command_tx, orders: order_tx, view: view_rx, events: event_rx, thread })
 }
 
 struct Session {
@@ -152,9 +156,13 @@ struct Session {
     /// The multiple of real time at the start. The speed returns to it after a flight.
     usual_speed: f64,
     takeoff_m: f64,
+    /// `true` once it was reported that estimates fly the embedded firmware instead of the remote one.
+    has_said_twin: bool,
     simulator: Option<Simulator>,
     endpoints: Option<Endpoints>,
     commands: CommandQueue,
+    /// Those of other programs.
+    orders: CommandQueue,
     events: EventSender,
     arming: ArmingWatch,
     interface: Interface,
@@ -220,9 +228,11 @@ impl Session {
             vehicle: config.vehicle,
             persistence,
             takeoff_m: config.takeoff_m,
+            has_said_twin: false,
             simulator: simulator.map(|link| Simulator::new(link, incoming, Instant::now())),
             endpoints: config.endpoints,
             commands: CommandQueue::new(commands),
+            orders: CommandQueue::new(mpsc::channel(1).1),
             events: EventSender::new(events),
             arming: ArmingWatch::default(),
             interface: Interface::default(),
@@ -304,7 +314,7 @@ impl Session {
                 }
                 view.send_replace(view_now);
             }
-            if ticks < SLICE && !self.more_waits && self.commands.is_idle() {
+            if ticks < SLICE && !self.more_waits && self.commands.is_idle() && self.orders.is_silent() {
                 std::thread::park_timeout(self.sleep_from(now, start.elapsed()));
             }
         }

@@ -100,6 +100,14 @@ impl FlightController {
         }
     }
 
+    /// Returns a configuration with the settings that a remote flight controller has reported.
+    pub(super) fn reported_configuration(&self) -> Option<&Configuration> {
+        match self {
+            Self::Embedded(_) => None,
+            Self::Remote(remote) => remote.telemetry().configuration.as_deref(),
+        }
+    }
+
     /// Returns `true` if the virtual sticks take precedence over the other sources of RC.
     pub fn sticks_taken_over(&self) -> bool {
         match self {

@@ -1,11 +1,13 @@
 //! Tests of the vehicle.
 
+use std::sync::Arc;
+
 use super::*;
 use crate::firmware::cli::CliMode;
 use crate::geo::LatLon;
 use crate::pilot::StickInput;
 use crate::sim::{Fault, WorldCommand};
-use crate::telemetry::TransitionReason;
+use crate::telemetry::{FirmwareProfile, TransitionReason};
 
 fn config() -> VehicleConfig {
     VehicleConfig {
@@ -168,4 +170,35 @@ fn a_wind_that_the_program_adds_is_the_air_at_the_craft_and_of_its_copies() {
     }
     let mut external = Vehicle::with_external_physics(config()).unwrap();
     assert_eq!(external.set_added_wind(wind), Err(WorldError::Outside));
+}
+
+#[test]
+fn a_remote_firmware_has_a_twin_with_its_settings_in_the_same_air_or_at_the_place_of_the_real_craft() {
+    let mut configuration = Configuration::default();
+    for (name, number) in [("ap_profile", 1), ("ap_max_angle", 33), ("align_mag", 2)] {
+        configuration.settings.set_number(name, number).unwrap();
+    }
+    let telemetry =
+        RemoteTelemetry { configuration: Some(Arc::new(configuration)), ..RemoteTelemetry::default() };
+    let air = WorldConfig { wind: "5@270".parse().unwrap(), ..WorldConfig::default() };
+    let mut simulated = Vehicle::with_remote_controller(air).unwrap();
+    assert!(simulated.twin().unwrap().is_none(), "it has reported no settings");
+    let mut real = Vehicle::elsewhere().unwrap();
+    for vehicle in [&mut simulated, &mut real] {
+        vehicle.remote_mut().unwrap().deliver_telemetry(telemetry.clone());
+    }
+    assert!(real.twin().unwrap().is_none(), "its place is unknown");
+    real.set_origin(LocalFrame::new(47.0, 8.0, 488.0));
+
+    let twin = simulated.twin().unwrap().unwrap();
+    let settings = &twin.embedded().unwrap().configuration().settings;
+    assert_eq!((settings.number("ap_max_angle"), settings.number("align_mag")), (33, 2));
+    assert_eq!(twin.controller().profile(), Some(FirmwareProfile::Master));
+    assert_eq!(twin.world_status().unwrap().wind, "5@270".parse().unwrap());
+    let twin = real.twin().unwrap().unwrap();
+    let settings = &twin.embedded().unwrap().configuration().settings;
+    assert_eq!((settings.number("ap_max_angle"), settings.number("align_mag")), (33, 0));
+    assert_eq!(twin.local_frame().map(|frame| (frame.lat_deg, frame.alt_amsl_m)), Some((47.0, 488.0)));
+    let modes = &twin.embedded().unwrap().configuration().modes;
+    assert_ne!(modes, &Configuration::default().modes, "the pilot has switches");
 }

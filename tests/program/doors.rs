@@ -11,6 +11,7 @@
 
 mod app;
 mod app_flow;
+mod ground_station;
 mod hostile_clients;
 mod logs;
 mod lost_time;

@@ -38,9 +38,14 @@ impl Descent {
         self.grounded_s
     }
 
-    /// Returns the target after `dt` seconds, and `true` once the craft has touched down.
-    pub(super) fn follow(&mut self, now: &NavInputs, params: &Params, dt: f64) -> (Target, bool) {
-        let rate_mps = params.descent_rate_mps();
+    /// Returns the target after `dt` seconds of a descent at this rate, and `true` once the craft has touched down.
+    pub(super) fn follow(
+        &mut self,
+        now: &NavInputs,
+        rate_mps: f64,
+        params: &Params,
+        dt: f64,
+    ) -> (Target, bool) {
         let sink_mps = -now.climb_mps;
         self.since_s += dt;
         self.has_descended |= sink_mps >= SHARE * rate_mps;
@@ -67,9 +72,9 @@ mod tests {
 
     #[test]
     fn the_descent_is_nearly_vertical_at_its_rate_towards_a_point_far_below() {
-        let params = Params { landing_descent_rate: 200, ..Params::default() };
+        let params = Params::default();
         let mut descent = Descent::new(Vector2::new(2.0, 0.0), &falling(20.0, 0.0));
-        let (target, _) = descent.follow(&falling(20.0, 0.0), &params, 0.01);
+        let (target, _) = descent.follow(&falling(20.0, 0.0), 2.0, &params, 0.01);
         assert_eq!(target.height.altitude_m, -180.0);
         assert!((target.height.climb_mps + 2.0).abs() < 1e-3, "{target:?}");
         assert!((target.point.vel_ne.norm() - 0.02).abs() < 1e-3);
@@ -77,10 +82,10 @@ mod tests {
 
     #[test]
     fn a_craft_that_stops_sinking_for_a_second_has_touched_down() {
-        let params = Params { landing_descent_rate: 100, ..Params::default() };
+        let params = Params::default();
         let mut descent = Descent::new(Vector2::zeros(), &falling(20.0, 0.0));
         let mut lands = |now: &NavInputs, seconds: f64| {
-            (0..(seconds / 0.01) as usize).any(|_| descent.follow(now, &params, 0.01).1)
+            (0..(seconds / 0.01) as usize).any(|_| descent.follow(now, 1.0, &params, 0.01).1)
         };
         assert!(!lands(&falling(20.0, 0.0), 3.0), "it has not descended yet");
         assert!(!lands(&falling(10.0, -1.0), 10.0));
@@ -89,10 +94,10 @@ mod tests {
 
     #[test]
     fn a_craft_that_never_sinks_is_down_if_it_is_low() {
-        let params = Params { landing_descent_rate: 100, ..Params::default() };
+        let params = Params::default();
         let lands = |alt_m: f64| {
             let mut descent = Descent::new(Vector2::zeros(), &falling(alt_m, 0.0));
-            (0..1000).position(|_| descent.follow(&falling(alt_m, 0.0), &params, 0.01).1)
+            (0..1000).position(|_| descent.follow(&falling(alt_m, 0.0), 1.0, &params, 0.01).1)
         };
         assert_eq!(lands(5.0), None);
         assert!((595..=605).contains(&lands(0.2).unwrap()), "{:?}", lands(0.2));

@@ -81,13 +81,13 @@ pub(super) struct Flown {
 }
 
 impl Leg {
-    /// Begins a leg to `end`. A line begins at `from`, the last target.
-    pub(super) fn new(end: &End, from: Vector2<f64>, now: &NavInputs) -> Self {
+    /// Begins a leg to `end`. A line begins at `from`, the last target, with the speed of the last carrot, m/s.
+    pub(super) fn new(end: &End, from: Vector2<f64>, carrot_mps: f64, now: &NavInputs) -> Self {
         let stops = matches!(end.kind, WaypointType::Hold | WaypointType::Land | WaypointType::Takeoff);
         if stops || end.next.is_none() {
             return Self::Point(PointLeg::default());
         }
-        Self::Line(Line::new(from, end.ne, &motion(now)))
+        Self::Line(Line::new(from, carrot_mps, end.ne, &motion(now)))
     }
 
     /// Flies the leg for `dt` seconds with at most `cruise_mps`.
@@ -177,7 +177,7 @@ mod tests {
     #[test]
     fn a_hold_is_reached_in_place_and_height_and_stays_so_within_half_a_radius_more() {
         let (end, params) = (end(WaypointType::Hold, None), Params::default());
-        let mut leg = Leg::new(&end, Vector2::zeros(), &at(0.0, 20.0));
+        let mut leg = Leg::new(&end, Vector2::zeros(), 0.0, &at(0.0, 20.0));
         let mut reached = |now: &NavInputs| leg.fly(now, &end, 5.0, &params, 0.01).is_reached;
         assert!(!reached(&at(97.9, 20.0)) && !reached(&at(98.1, 16.9)));
         assert!(reached(&at(98.1, 18.5)) && reached(&at(97.1, 17.5)));
@@ -195,7 +195,7 @@ mod tests {
             (WaypointType::Hold, next, false),
         ] {
             let end = end(kind, next);
-            let flown = Leg::new(&end, Vector2::zeros(), &now).fly(&now, &end, 5.0, &params, 0.01);
+            let flown = Leg::new(&end, Vector2::zeros(), 0.0, &now).fly(&now, &end, 5.0, &params, 0.01);
             assert_eq!(flown.line.is_some(), is_line, "{kind}");
         }
     }

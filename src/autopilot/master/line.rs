@@ -72,15 +72,15 @@ pub(super) struct Followed {
 }
 
 impl Line {
-    /// Begins the leg from `start`, the last carrot, to `end`.
-    pub(super) fn new(start: Vector2<f64>, end: Vector2<f64>, now: &Motion) -> Self {
+    /// Begins the leg from `start`, the last carrot, to `end`. The carrot keeps its speed.
+    pub(super) fn new(start: Vector2<f64>, carrot_mps: f64, end: Vector2<f64>, now: &Motion) -> Self {
         let line = Self {
             start,
             end,
             along_m: 0.0,
             speed_mps: now.speed_mps,
             carrot_m: 0.0,
-            carrot_mps: now.speed_mps,
+            carrot_mps,
             excess_mps: 0.0,
             is_too_fast: false,
         };
@@ -204,7 +204,7 @@ mod tests {
     impl Bench {
         fn new() -> Self {
             let end = Vector2::new(200.0, 0.0);
-            let line = Line::new(Vector2::zeros(), end, &craft(0.0, 0.0));
+            let line = Line::new(Vector2::zeros(), 0.0, end, &craft(0.0, 0.0));
             Self {
                 line,
                 corner: Corner { speed_mps: 3.0, gate_m: 5.0 },
@@ -257,7 +257,7 @@ mod tests {
     #[test]
     fn a_craft_that_is_too_fast_is_waited_for() {
         let mut bench = Bench::new();
-        bench.line = Line::new(Vector2::zeros(), Vector2::new(200.0, 0.0), &craft(190.0, 9.0));
+        bench.line = Line::new(Vector2::zeros(), 9.0, Vector2::new(200.0, 0.0), &craft(190.0, 9.0));
         let followed = bench.line.follow(&craft(190.0, 9.0), &bench.corner, None, 10.0, &bench.params, 0.01);
         assert!(bench.line.is_too_fast && followed.excess_mps > TOO_FAST_MPS);
         for _ in 0..500 {
@@ -270,7 +270,7 @@ mod tests {
     fn a_nose_that_points_back_stops_the_carrot_and_is_turned() {
         let mut bench = Bench::new();
         let back = Motion { heading_rad: 3.0, ..craft(50.0, 0.0) };
-        bench.line = Line::new(Vector2::zeros(), Vector2::new(200.0, 0.0), &back);
+        bench.line = Line::new(Vector2::zeros(), 0.0, Vector2::new(200.0, 0.0), &back);
         let followed = bench.line.follow(&back, &bench.corner, None, 10.0, &bench.params, 0.01);
         assert_eq!((followed.speed_mps, followed.heading_rad), (0.0, Some(NORTH)));
     }

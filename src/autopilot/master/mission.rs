@@ -338,7 +338,8 @@ impl Mission {
     }
 
     fn land(&mut self, now: &NavInputs, params: &Params, dt: f64) -> Option<Order> {
-        let (target, is_down) = self.descent.as_mut()?.follow(now, params, dt);
+        let rate_mps = self.rescue.map_or_else(|| params.descent_rate_mps(), |rescue| rescue.descend_mps);
+        let (target, is_down) = self.descent.as_mut()?.follow(now, rate_mps, params, dt);
         if is_down {
             let held_s = self.descent.as_ref().map_or(0.0, Descent::grounded_s);
             let wanted_s = 0.1 * f64::from(params.landing_detection_time);
@@ -374,8 +375,11 @@ impl Mission {
     }
 
     fn begin_leg(&mut self, reason: TransitionReason, guard: Option<Guard>, now: &NavInputs) {
+        // A carrot that ran before runs on.
+        let carrot_mps = self.flown.filter(|_| self.commanded_ne.is_some()).and_then(|flown| flown.line);
+        let carrot_mps = carrot_mps.map_or(0.0, |(_, line)| line.speed_mps);
         let from = self.commanded_ne.unwrap_or(now.pos_ne);
-        self.leg = self.route.end(now).map(|end| Leg::new(&end, from, now));
+        self.leg = self.route.end(now).map(|end| Leg::new(&end, from, carrot_mps, now));
         self.progress = None;
         self.descent = None;
         self.enter(NavState::Approaching, reason, guard, now);

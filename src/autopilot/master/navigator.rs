@@ -42,8 +42,8 @@ pub struct HoldOrders {
     pub climb_mps: Option<f64>,
     /// `true` if the position is held.
     pub position: bool,
-    /// `true` while the pilot moves the roll or pitch stick.
-    pub sticks: bool,
+    /// The tilt (forward, right, rad) that the roll and pitch sticks ask for; `None` while both rest.
+    pub sticks: Option<Vector2<f64>>,
 }
 
 /// The laws of altitude, position and yaw, whichever of mission and holds uses them.
@@ -311,13 +311,11 @@ impl MasterNavigator {
             }
         };
         let tilt = match orders {
-            HoldOrders { position: true, sticks: false, .. } => {
-                Some(self.controls.hold_position(now, params))
-            }
-            HoldOrders { position: true, sticks: true, .. } => {
+            HoldOrders { position: true, sticks: None, .. } => Some(self.controls.hold_position(now, params)),
+            HoldOrders { position: true, sticks: Some(sticks), .. } => {
                 self.controls.stop = None;
-                self.controls.position.pause();
-                None
+                let here = Point { ne: now.pos_ne, vel_ne: Vector2::zeros() };
+                Some(self.controls.position.tilt(now, &here, Task::Sticks, sticks, params, now.dt))
             }
             HoldOrders { position: false, .. } => {
                 self.controls.stop = None;
@@ -335,7 +333,7 @@ impl Controls {
     }
 
     fn tilt(&mut self, point: &Point, task: Task, now: &NavInputs, params: &Params) -> Vector2<f64> {
-        self.position.tilt(now, point, task, params, now.dt)
+        self.position.tilt(now, point, task, Vector2::zeros(), params, now.dt)
     }
 
     /// Returns the throttle, µs. Takes over first if the altitude was the pilot's.

@@ -42,6 +42,8 @@ pub(super) enum Task {
     Hold,
     /// Comes to rest before it keeps a point.
     Brake,
+    /// Damps the motion that the sticks ask for.
+    Sticks,
 }
 
 /// A point and the velocity towards it, north and east, m and m/s.
@@ -82,17 +84,14 @@ impl PositionLaw {
         *self = Self::default();
     }
 
-    /// Stops to follow a point, and keeps the integral.
-    pub(super) fn pause(&mut self) {
-        *self = Self { integral: self.integral, ..Self::default() };
-    }
-
-    /// Returns the tilt (forward, right), rad, `dt` seconds after the last update.
+    /// Returns the tilt (forward, right), rad, `dt` seconds after the last update. The angle of the sticks (forward, right,
+    /// rad) is added within `ap_max_angle`.
     pub(super) fn tilt(
         &mut self,
         now: &NavInputs,
         wanted: &Point,
         task: Task,
+        sticks: Vector2<f64>,
         params: &Params,
         dt: f64,
     ) -> Vector2<f64> {
@@ -106,7 +105,7 @@ impl PositionLaw {
             Task::Hold => {
                 self.integral = (self.integral + away * dt).map(|axis| axis.clamp(-INTEGRAL, INTEGRAL));
             }
-            Task::Brake => {}
+            Task::Brake | Task::Sticks => {}
             Task::Navigate => self.integral = Vector2::zeros(),
         }
         let damping = gain(D, params.position_d);
@@ -118,9 +117,10 @@ impl PositionLaw {
             + (commanded - last_commanded) * (gain(F, params.position_f) / dt.max(1e-3));
         let filtered = self.low_pass.apply(filtered, 0.1 * f64::from(params.position_cutoff), dt);
         let direct = self.integral * gain(I, params.position_i) + velocity * (drag - damping * boost);
-        let earth = (filtered + direct).cap_magnitude(f64::from(params.max_angle));
+        let earth = (filtered + direct).map(f64::to_radians);
         let (sin, cos) = math::sin_cos(now.heading_rad);
-        Vector2::new(earth.x * cos + earth.y * sin, earth.y * cos - earth.x * sin).map(f64::to_radians)
+        let body = Vector2::new(earth.x * cos + earth.y * sin, earth.y * cos - earth.x * sin);
+        (body + sticks).cap_magnitude(params.max_tilt_rad())
     }
 }
 
@@ -135,7 +135,7 @@ mod tests {
     /// Returns the steady tilt, degrees, for a velocity and a commanded point and velocity.
     fn steady(now: &NavInputs, wanted: Point, task: Task, params: &Params) -> Vector2<f64> {
         let mut law = PositionLaw::default();
-        let tilts = (0..200).map(|_| law.tilt(now, &wanted, task, params, 0.01));
+        let tilts = (0..200).map(|_| law.tilt(now, &wanted, task, Vector2::zeros(), params, 0.01));
         tilts.last().unwrap().map(f64::to_degrees)
     }
 

@@ -86,7 +86,10 @@ impl Route {
             match modifier.kind {
                 WaypointType::AltChange => self.altitude_m = Some(modifier.altitude.above_home_m()),
                 WaypointType::Delay => delay_s = Some(modifier.duration.get()),
-                WaypointType::YawRate => self.yaw_cap_dps = Some(f64::from(modifier.yaw_rate_dps)),
+                // 0 removes the cap.
+                WaypointType::YawRate => {
+                    self.yaw_cap_dps = Some(modifier.yaw_rate_dps).filter(|rate| *rate > 0).map(f64::from);
+                }
                 _ => {}
             }
         }
@@ -201,5 +204,15 @@ mod tests {
         now.pos_ne.x = 3.0;
         route.go_to(2, &now, &params);
         assert_eq!(route.yaw_cap_dps(), Some(12.0));
+    }
+
+    #[test]
+    fn a_yaw_rate_of_zero_removes_the_cap() {
+        let yaw = |yaw_rate_dps| Waypoint { yaw_rate_dps, ..waypoint(WaypointType::YawRate, 0.0) };
+        let land = waypoint(WaypointType::Land, 50.0);
+        let (mut route, now, params) = route(&[yaw(12), land, yaw(0), land]);
+        assert_eq!(route.yaw_cap_dps(), Some(12.0));
+        route.go_to(2, &now, &params);
+        assert_eq!(route.yaw_cap_dps(), None);
     }
 }

@@ -1,5 +1,7 @@
 //! The settings of a remote flight controller, as far as they were read.
 
+use std::sync::Arc;
+
 use crate::fc::telemetry::settings;
 use crate::firmware::cli::Interpreter;
 use crate::firmware::config::Configuration;
@@ -20,6 +22,8 @@ const TRUSTS_MAG: &str = "trust_mag";
 #[derive(Debug, Clone, Default)]
 pub(super) struct Settings {
     twin: Option<Box<Firmware>>,
+    /// The configuration of the twin after the last answer.
+    configuration: Option<Arc<Configuration>>,
     /// `true` if the autopilot's settings were among them.
     knows_autopilot: bool,
     waypoints_from_home: bool,
@@ -43,6 +47,12 @@ impl Settings {
         }
         let profile = if self.knows_autopilot && !self.waypoints_from_home { "MASTER" } else { "GUIDE" };
         twin.run_cli(&mut Interpreter::default(), &format!("set ap_profile = {profile}"));
+        self.configuration = Some(Arc::new(twin.configuration().clone()));
+    }
+
+    /// Returns the configuration of an embedded firmware with these settings; `None` until those of the autopilot are known.
+    pub(super) fn configuration(&self) -> Option<Arc<Configuration>> {
+        self.configuration.clone().filter(|_| self.knows_autopilot)
     }
 
     pub(super) fn view(&self) -> Option<SettingsView> {

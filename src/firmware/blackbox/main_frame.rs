@@ -97,7 +97,7 @@ impl MainState {
             throttle: control.throttle,
             voltage_v: battery.voltage_v,
             current_a: battery.current_a,
-            mag_flu: firmware.sensing.mag_flu - parameters.estimator.mag_offset_flu,
+            mag_flu: parameters.estimator.field_flu(&firmware.sensing.mag_flu),
             baro_alt_m: estimate.baro_alt_m,
             rssi: receiver.rssi(&parameters.rx),
             gyro_dps: control.gyro_dps,

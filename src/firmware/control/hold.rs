@@ -66,6 +66,11 @@ impl HoldTuning {
 }
 
 impl HoldTuning {
+    /// Returns the throttle stick (µs) whose throttle in master is this one (µs): its range begins at `min_check`.
+    pub fn stick_of_throttle_us(&self, throttle_us: f64) -> f64 {
+        self.low_us + (throttle_us - 1000.0) * (2000.0 - self.low_us) / 1000.0
+    }
+
     /// Returns the climb rate that the throttle stick (µs) asks of ALTHOLD with this hover throttle (µs), m/s.
     pub fn climb_mps(&self, stick_us: f64, hover_us: f64, params: &Params) -> f64 {
         altitude::climb_share(stick_us, hover_us, self) * params.climb_rate_mps()
@@ -78,6 +83,13 @@ impl HoldTuning {
         let stick = Vector2::new(share(now.stick_pitch), share(now.stick_roll));
         let tilt = stick.cap_magnitude(1.0) * limit_rad;
         (stick != Vector2::zeros()).then_some(TiltDemand { pitch_down_rad: tilt.x, roll_rad: tilt.y })
+    }
+
+    /// Returns `true` while the pilot moves the roll or pitch stick in a position hold.
+    pub fn moves_sticks(&self, now: &NavInputs) -> bool {
+        [now.stick_roll, now.stick_pitch]
+            .iter()
+            .any(|&stick| position::share(stick, self.stick_deadband) != 0.0)
     }
 
     /// Returns the throttle stick (µs) that makes a craft with this hover throttle (µs) sink at a rate (m/s) in

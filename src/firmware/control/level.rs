@@ -4,6 +4,9 @@
 //! is commanded directly, and the gain corrects only the craft's error from it, so the craft follows a stick step
 //! quickly without overshoot. With `angle_feedforward = 0` there is no lead and the gain alone pulls the craft to the
 //! demand.
+//!
+//! Master has no leading angle: the gain pulls the craft to the demand, and the rate of the sticks' demand is added, smoothed.
+//! The angles of its autopilot and holds get the gain alone.
 
 use super::derived::Derived;
 use super::tuning::LevelTuning;
@@ -18,6 +21,8 @@ const LEAD_LIMIT_DPS: f64 = 600.0;
 const COUPLED_YAW_DPS: f64 = 0.01;
 /// The largest roll (°) used to compensate a pitch rate with yaw. Near the vertical there is no heading.
 const COUPLED_ROLL_DEG: f64 = 75.0;
+/// The smoothing time of the feedforward of master times the cutoff of its low-pass.
+const SMOOTHING_CYCLES: f64 = 7.2;
 
 /// The inputs of the angle loop.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -53,6 +58,9 @@ impl Lead {
 #[derive(Debug, Clone, PartialEq, Default)]
 pub(super) struct Level {
     lead: [Lead; 2],
+    /// Master: the demand of the last update, °, and the smoothed rate of it.
+    last_target: [f64; 2],
+    target_rates: [Pt3; 2],
     filters: [Pt3; 2],
     wanted: [f64; 2],
     yaw_share: f64,
@@ -74,8 +82,25 @@ impl Level {
             for (axis, &rate) in gyro.iter().take(2).enumerate() {
                 self.lead[axis] = Lead { angle: demand.flown[axis], rate };
                 self.filters[axis].reset(rate);
+                self.target_rates[axis].reset(0.0);
             }
+            self.last_target = demand.target;
         }
+        if tuning.is_plain {
+            self.pull(demand, tuning, dt);
+        } else {
+            self.lead(demand, tuning, dt);
+        }
+        let keeps_heading = demand.keeps_heading && !tuning.is_plain;
+        self.yaw_coupling_dps = if keeps_heading { keep_heading(demand, gyro[1]) } else { 0.0 };
+        self.yaw_share = 1.0;
+        if demand.yaw_dps.abs() > COUPLED_YAW_DPS {
+            self.couple(demand);
+        }
+    }
+
+    /// Moves the leading angle, and corrects the craft's error from it.
+    fn lead(&mut self, demand: &LevelDemand, tuning: &LevelTuning, dt: f64) {
         let share = tuning.feedforward.min(1.0);
         let poles = LEAD_POLES / tuning.smoothing_s.max(dt);
         for axis in 0..2 {
@@ -85,10 +110,18 @@ impl Level {
             let error = wrap_deg(wanted - demand.flown[axis] - tuning.trim_deg[axis]);
             self.wanted[axis] = tuning.p * error + tuning.feedforward * lead.rate;
         }
-        self.yaw_coupling_dps = if demand.keeps_heading { keep_heading(demand, gyro[1]) } else { 0.0 };
-        self.yaw_share = 1.0;
-        if demand.yaw_dps.abs() > COUPLED_YAW_DPS {
-            self.couple(demand);
+    }
+
+    /// Pulls the craft to the demand by the laws of master.
+    fn pull(&mut self, demand: &LevelDemand, tuning: &LevelTuning, dt: f64) {
+        let gain = Pt3::gain(1.0 / (SMOOTHING_CYCLES * tuning.smoothing_s.max(dt)), dt);
+        let last = std::mem::replace(&mut self.last_target, demand.target);
+        for (axis, last) in last.into_iter().enumerate() {
+            let target = demand.target[axis];
+            let rate = if demand.keeps_heading { 0.0 } else { (target - last) / dt.max(1e-6) };
+            let lead_dps = tuning.feedforward * self.target_rates[axis].apply(rate, gain);
+            let error = wrap_deg(target - demand.flown[axis] - tuning.trim_deg[axis]);
+            self.wanted[axis] = tuning.p * error + lead_dps;
         }
     }
 
@@ -173,6 +206,20 @@ mod tests {
         let mut level = Level::default();
         level.update(&demand(30.0, 10.0), &[0.0; 3], &tuning, 0.002);
         assert!((level.wanted[0] - 5.0 * 20.0).abs() < 1e-9);
+    }
+
+    #[test]
+    fn master_pulls_to_the_angle_of_the_autopilot_and_leads_only_for_the_sticks() {
+        let tuning = LevelTuning { is_plain: true, ..Tuning::default().level };
+        let wanted = |keeps_heading: bool| {
+            let mut level = Level::default();
+            let demand = |target: f64| LevelDemand { keeps_heading, ..demand(target, 0.0) };
+            level.update(&demand(0.0), &[0.0; 3], &tuning, 0.002);
+            (0..40).for_each(|_| level.update(&demand(20.0), &[0.0; 3], &tuning, 0.002));
+            level.wanted[0]
+        };
+        assert!((wanted(true) - 5.0 * 20.0).abs() < 1e-9);
+        assert!(wanted(false) > 5.0 * 20.0 + 30.0, "{}", wanted(false));
     }
 
     #[test]

@@ -6,6 +6,7 @@ use crate::firmware::filter::LowPassKind;
 use crate::firmware::settings::Settings;
 use crate::math;
 use crate::signals::PerMotor;
+use crate::telemetry::FirmwareProfile;
 
 /// The gains of one axis. The error is in °/s, the sum in thousandths of the mixer's range.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
@@ -130,6 +131,8 @@ pub struct RateTuning {
 /// Settings of ANGLE and HORIZON.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct LevelTuning {
+    /// `true` for the angle loop of master, which has no leading angle.
+    pub is_plain: bool,
     /// The largest angle of the sticks, °.
     pub limit_deg: f64,
     /// The rate per angle error, 1/s.
@@ -236,6 +239,10 @@ const FULL_D_DPS2: f64 = 200_000.0;
 /// The value of `angle_feedforward` that leads the whole angle. It is a little above the default, because the rate loop
 /// lags and the angle loop adds the rest.
 const FULL_ANGLE_FEEDFORWARD: f64 = 67.0;
+/// That of master, whose sticks overshoot in ANGLE. Measured, as is the smoothing.
+const FULL_PLAIN_FEEDFORWARD: f64 = 62.0;
+/// The full stick deflection, RC command units.
+const FULL_STICK: f64 = 500.0;
 
 impl Tuning {
     /// Reads the tuning of the active profiles for this airframe type. A type that cannot fly here flies as QUADX.
@@ -265,6 +272,14 @@ impl Tuning {
             level: reader.level(),
             mixer: reader.mixer(mixer, custom_mix),
         }
+    }
+
+    /// Returns the angles that the sticks (RC command units, roll right and pitch nose down) ask for in ANGLE mode, °.
+    pub fn stick_angles_deg(&self, sticks: [f64; 2]) -> [f64; 2] {
+        [0, 1].map(|axis| {
+            let rate = self.rates[axis].rate_dps(sticks[axis] / FULL_STICK);
+            self.level.limit_deg * (rate / self.rates[axis].rate_dps(1.0).max(1.0)).clamp(-1.0, 1.0)
+        })
     }
 }
 
@@ -389,10 +404,13 @@ impl Reader<'_> {
     }
 
     fn level(&self) -> LevelTuning {
+        let is_plain = self.0.profile() == FirmwareProfile::Master;
+        let full_feedforward = if is_plain { FULL_PLAIN_FEEDFORWARD } else { FULL_ANGLE_FEEDFORWARD };
         LevelTuning {
+            is_plain,
             limit_deg: self.number("angle_limit"),
             p: self.number("angle_p_gain") / 10.0,
-            feedforward: self.number("angle_feedforward") / FULL_ANGLE_FEEDFORWARD,
+            feedforward: self.number("angle_feedforward") / full_feedforward,
             smoothing_s: self.number("angle_feedforward_smoothing_ms") / 1000.0,
             earth_reference: self.number("angle_earth_ref") / 100.0,
             trim_deg: [self.number("acc_trim_roll") / 10.0, self.number("acc_trim_pitch") / 10.0],

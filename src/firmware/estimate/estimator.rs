@@ -297,7 +297,7 @@ impl Estimator {
         }
         if let Some(mag) = &mut self.mag {
             if let Some(sample) = &self.pending_mag {
-                mag.feed(sample);
+                mag.feed(&self.tuning.aligned_mag(sample));
             }
             if let Some(result) = mag.wait(dt) {
                 (self.mag, self.mag_result) = (None, Some(result));
@@ -336,6 +336,8 @@ impl Estimator {
             if self.armed {
                 self.fuse_course(velocity, turn, arrived);
             }
+            // Master compares a solution with its newest estimate.
+            let age = if self.tuning.is_plain { 0.0 } else { age };
             self.horizontal.fuse(&sample, age);
             if self.tuning.altitude_source != AltitudeSource::BaroOnly {
                 self.vertical.fuse_gps(&sample, age, self.tuning.altitude_source, !self.armed);
@@ -363,7 +365,9 @@ impl Estimator {
         }
         // A suspected magnetometer corrects nothing, so the heading already follows the course.
         let held = || self.compass.is_suspected().then_some(0.0);
+        // Master compares its compass with nothing.
         if self.tuning.has_mag
+            && !self.tuning.is_plain
             && self.since_mag_sample_s < MAG_VALID_S
             && let Some(error) = self.course.heading_error().or_else(held)
             && self.compass.update(wrap_pi(error - self.mag_error), dt) == Some(CompassVerdict::Doubted)
@@ -408,7 +412,7 @@ impl Estimator {
             set => set,
         };
         let sample = self.pending_mag.take().filter(|_| self.tuning.has_mag);
-        if let Some(mag) = sample.map(|mag| mag - self.tuning.mag_offset_flu)
+        if let Some(mag) = sample.map(|mag| self.tuning.field_flu(&mag))
             && let Some(error) = magnetic_error(&self.attitude.matrix, &mag, declination.to_radians())
         {
             self.since_mag_sample_s = 0.0;
@@ -420,11 +424,7 @@ impl Estimator {
             if self.armed && !self.compass.may_correct() {
                 return;
             }
-            let trust = match (self.armed, self.tuning.trust_mag) {
-                (false, _) => MagTrust::Parked,
-                (true, true) => MagTrust::Trusted,
-                (true, false) => MagTrust::Doubted,
-            };
+            let trust = MagTrust::new(self.armed, self.tuning.trust_mag, self.tuning.is_plain);
             let correction = trust.correction(error, dt);
             if correction != 0.0 {
                 self.since_mag_s = 0.0;

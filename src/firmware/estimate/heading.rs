@@ -9,6 +9,8 @@ use crate::math;
 /// the air.
 const PARKED_S: f64 = 0.5;
 const TRUSTED_S: f64 = 5.0;
+/// That of master, measured by the error beside a steady bias of the gyro.
+const PLAIN_S: f64 = 7.5;
 const DOUBTED_S: f64 = 20.0;
 /// The largest error at which a doubted magnetometer is still used, rad.
 const DOUBT_LIMIT: f64 = 10.0 * std::f64::consts::PI / 180.0;
@@ -47,16 +49,29 @@ pub(super) enum MagTrust {
     Parked,
     /// In the air, `trust_mag` on.
     Trusted,
+    /// The same with the weights of master.
+    Plain,
     /// In the air, `trust_mag` off.
     Doubted,
 }
 
 impl MagTrust {
+    /// Returns the trust on the ground or in the air, by `trust_mag`, and by the weights of master.
+    pub(super) fn new(armed: bool, trust_mag: bool, is_plain: bool) -> Self {
+        match (armed, trust_mag) {
+            (false, _) => Self::Parked,
+            (true, true) if is_plain => Self::Plain,
+            (true, true) => Self::Trusted,
+            (true, false) => Self::Doubted,
+        }
+    }
+
     /// Returns the part of a heading error that one sample corrects after `dt` seconds, rad; zero if it is not trusted.
     pub(super) fn correction(self, error: f64, dt: f64) -> f64 {
         let time_constant = match self {
             Self::Parked => PARKED_S,
             Self::Trusted => TRUSTED_S,
+            Self::Plain => PLAIN_S,
             Self::Doubted if error.abs() < DOUBT_LIMIT => DOUBTED_S,
             Self::Doubted => return 0.0,
         };

@@ -1,10 +1,11 @@
 //! The options and settings of the estimator.
 
+use super::alignment::mag_alignment;
 use super::calibration::{acc_offset, mag_offset};
 use super::vertical::AltitudeSource;
 use crate::firmware::settings::Settings;
 use crate::telemetry::FirmwareProfile;
-use nalgebra::Vector3;
+use nalgebra::{Rotation3, Vector3};
 
 /// The source of the attitude.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Hash, strum::Display)]
@@ -59,6 +60,8 @@ pub struct EstimatorTuning {
     pub acc_offset_flu: Vector3<f64>,
     /// The magnetometer zero, body forward-left-up, sensor units.
     pub mag_offset_flu: Vector3<f64>,
+    /// The rotation from the axes of the magnetometer to those of the body.
+    pub mag_alignment: Option<Rotation3<f64>>,
     /// The quiet time of a gyro calibration, s.
     pub gyro_calibration_s: f64,
     /// The standard deviation above which it restarts, gyro units; 0 = no limit.
@@ -104,6 +107,7 @@ impl EstimatorTuning {
             acc_lpf_hz: number("acc_lpf_hz"),
             acc_offset_flu: acc_offset(settings.array("acc_calibration")),
             mag_offset_flu: mag_offset(settings.array("mag_calibration")),
+            mag_alignment: mag_alignment(settings),
             gyro_calibration_s: number("gyro_calib_duration") * 0.01,
             gyro_noise_limit: number("gyro_calib_noise_limit"),
             attitude_us: 1000 * settings.number("imu_process_denom").clamp(1, 4).unsigned_abs(),
@@ -122,6 +126,16 @@ impl EstimatorTuning {
             shown_climb_hz: number("altitude_d_lpf") * 0.01,
             accel_trust: number("ap_position_a"),
         }
+    }
+
+    /// Returns a sample of the magnetometer in the axes of the body, before the calibration.
+    pub(super) fn aligned_mag(&self, sample: &Vector3<f64>) -> Vector3<f64> {
+        self.mag_alignment.map_or(*sample, |rotation| rotation * sample)
+    }
+
+    /// Returns the field from a sample of the magnetometer, body forward-left-up, sensor units.
+    pub fn field_flu(&self, sample: &Vector3<f64>) -> Vector3<f64> {
+        self.aligned_mag(sample) - self.mag_offset_flu
     }
 }
 

@@ -124,7 +124,7 @@ impl MspFacts {
             has_mag: firmware.configuration().settings.text("mag_hardware") != "NONE",
             specific_force_flu: estimate.force_flu,
             rate_flu: Vector3::new(rates.roll, rates.pitch_down, -rates.yaw),
-            mag_flu: firmware.sensing.mag_flu - firmware.parameters().estimator.mag_offset_flu,
+            mag_flu: firmware.parameters().estimator.field_flu(&firmware.sensing.mag_flu),
             attitude: estimate.attitude,
             roll_deg: estimate.roll_rad.to_degrees(),
             pitch_deg: -estimate.pitch_down_rad.to_degrees(),

@@ -157,6 +157,12 @@ impl Settings {
         if self.flag(profile::NAME) { FirmwareProfile::Master } else { FirmwareProfile::Guide }
     }
 
+    /// Chooses the profile of the autopilot.
+    pub fn set_profile(&mut self, profile: FirmwareProfile) {
+        // The value is one of the setting's.
+        self.set_number(profile::NAME, i64::from(profile == FirmwareProfile::Master)).ok();
+    }
+
     /// Returns a setting with the permitted values, the default and the role that it has in the present profile.
     pub fn resolved(&self, setting: &Setting) -> Setting {
         profile::resolved(setting, self.profile())

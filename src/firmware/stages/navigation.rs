@@ -1,13 +1,13 @@
 //! The demands that replace the pilot's, from failsafe, navigator and holds. Runs a hundred times a second.
 
-use nalgebra::Vector3;
+use nalgebra::{Vector2, Vector3};
 
+use crate::autopilot::Autopilot;
 use crate::autopilot::control::{AltitudeController, FlightControllers};
 use crate::autopilot::io::{NavInputs, NavOutput};
 use crate::autopilot::land_detector::{GroundMeasurement, ImpactFacts};
 use crate::autopilot::master::{HoldOrders, MasterNavigator, Return};
-use crate::autopilot::{Autopilot, Params};
-use crate::firmware::control::hold::{DescentRate, HoldModes, HoldOutput, HoldTuning, Holds};
+use crate::firmware::control::hold::{DescentRate, HoldModes, HoldOutput, Holds};
 use crate::firmware::control::{ControlState, TiltDemand};
 use crate::firmware::estimate::Estimate;
 use crate::firmware::failsafe::{Failsafe, FailsafeAction, FailsafeFacts, Procedure, Response};
@@ -20,7 +20,7 @@ use crate::plan::FlightPlan;
 use crate::signals::SimTime;
 use crate::telemetry::{
     FirmwareEvent, FirmwareNotice, FirmwareProfile, InFlightCommand, InFlightRefusal, Mode, ModeFlags,
-    NavEvent, Refusal,
+    NavEvent, NavState, Refusal,
 };
 
 use super::flight_control::Demand;
@@ -69,26 +69,32 @@ fn hold_by_master(
     modes: HoldModes,
     now: &NavInputs,
     stick_us: Option<f64>,
-    params: &Params,
-    tuning: &HoldTuning,
+    parameters: &Parameters,
 ) -> HoldOutput {
+    let (params, tuning) = (&parameters.nav, &parameters.hold);
     let climb_mps = match (modes.descend, stick_us) {
         // Its failsafe descends at the climb rate of ALTHOLD, down to the ground.
         (Some(DescentRate::Failsafe), _) => -params.climb_rate_mps(),
         (Some(rate), _) => -rate.at(now.alt_m, params),
-        (None, Some(stick_us)) => tuning.climb_mps(stick_us, navigator.hover_us(params), params),
+        (None, Some(stick_us)) => {
+            let neutral_us = tuning.stick_of_throttle_us(navigator.hover_us(params));
+            tuning.climb_mps(stick_us, neutral_us, params)
+        }
         (None, None) => 0.0,
     };
     let position = modes.position && now.fix && tuning.uses_gps;
-    let by_stick = tuning.stick_tilt(now, params.max_tilt_rad()).filter(|_| position);
+    let stick_tilt = || {
+        let [roll, pitch] = parameters.control.stick_angles_deg([now.stick_roll, now.stick_pitch]);
+        Vector2::new(pitch, roll).map(f64::to_radians)
+    };
     let orders = HoldOrders {
         climb_mps: (now.altitude_valid && (modes.altitude || modes.descend.is_some())).then_some(climb_mps),
         position,
-        sticks: by_stick.is_some(),
+        sticks: tuning.moves_sticks(now).then(stick_tilt),
     };
     let held = navigator.hold(orders, now, params);
     HoldOutput {
-        tilt: by_stick.or(held.tilt.map(|tilt| TiltDemand { pitch_down_rad: tilt.x, roll_rad: tilt.y })),
+        tilt: held.tilt.map(|tilt| TiltDemand { pitch_down_rad: tilt.x, roll_rad: tilt.y }),
         throttle: held.throttle,
         no_position: modes.position && !position,
         touchdown: false,
@@ -340,7 +346,7 @@ impl Navigation {
                     self.holds.update(hold, &self.inputs, stick_us, nav, tuning, &mut self.controllers)
                 }
                 Autopilot::Master(navigator) => {
-                    hold_by_master(navigator, hold, &self.inputs, stick_us, nav, tuning)
+                    hold_by_master(navigator, hold, &self.inputs, stick_us, parameters)
                 }
             }
         };
@@ -359,9 +365,13 @@ impl Navigation {
             None => Demand { tilt: held.tilt, throttle: held.throttle, ..Demand::default() },
         };
         if self.navigator.profile() == FirmwareProfile::Master {
-            // Its holds know no ground, and the sticks tilt the craft in a mission, too.
+            // Its holds know no ground. The sticks tilt the craft in a HOLD of its missions, and have no effect on a leg.
+            let holds = matches!(
+                self.navigator.telemetry().state,
+                NavState::Holding | NavState::Orbiting | NavState::Figure8
+            );
             let by_stick = parameters.hold.stick_tilt(&self.inputs, parameters.nav.max_tilt_rad());
-            let tilt = by_stick.filter(|_| self.output.is_some()).or(demand.tilt);
+            let tilt = by_stick.filter(|_| self.output.is_some() && holds).or(demand.tilt);
             return Flown { demand: Demand { tilt, ..demand }, touchdown: false };
         }
         let land = &self.controllers.land;
@@ -428,7 +438,9 @@ impl Navigation {
             Autopilot::Guide(_) => {
                 self.controllers.altitude.hover_stick_us(&parameters.nav, parameters.hold.mid_us)
             }
-            Autopilot::Master(navigator) => navigator.hover_us(&parameters.nav),
+            Autopilot::Master(navigator) => {
+                parameters.hold.stick_of_throttle_us(navigator.hover_us(&parameters.nav))
+            }
         }
     }
 

@@ -37,8 +37,9 @@ impl PilotSettings {
                 continue;
             };
             let (name, value) = (name.trim(), value.trim());
-            // The simulated craft has motors of its own.
-            if matches!(name, "ap_profile" | "motor_pwm_protocol" | "mag_hardware") {
+            // The simulated craft has motors and a compass of its own, which is not turned.
+            let is_own = matches!(name, "ap_profile" | "motor_pwm_protocol" | "mag_hardware" | "align_mag");
+            if is_own || name.starts_with("mag_align_") {
                 continue;
             }
             let setting = format!("{name} = {value}");

@@ -39,7 +39,13 @@ const EMBEDDED: Facts = Facts {
     is_replay: false,
 };
 const REMOTE: Facts = Facts {
-    remote: Some(RemoteFacts { is_ready: true, has_plans: true, opens_cli: false, is_in_steps: false }),
+    remote: Some(RemoteFacts {
+        is_ready: true,
+        has_plans: true,
+        knows_settings: false,
+        opens_cli: false,
+        is_in_steps: false,
+    }),
     is_recorded: false,
     ..EMBEDDED
 };
@@ -119,7 +125,7 @@ fn a_remote_flight_controller_of_a_simulated_craft_keeps_its_time() {
         (Intent::Recording, NOT_RECORDED),
         (Intent::FlyOn, NOT_RECORDED),
         (Intent::Order, NO_ORDERS),
-        (Intent::Forecast, CONTROLLER_IS_REMOTE),
+        (Intent::Forecast, SETTINGS_UNKNOWN),
         (Intent::FlyAhead, CONTROLLER_IS_REMOTE),
     ];
     assert_eq!(refused(&REMOTE), table(&always));
@@ -133,8 +139,14 @@ fn a_remote_flight_controller_of_a_simulated_craft_keeps_its_time() {
         assert_eq!(check(&pictures, intent), Err(Refusal::Now(NOT_FLOWN_AGAIN)));
         assert_eq!(check(&Facts { cannot_continue: false, ..pictures }, intent), Ok(()));
     }
+    let known = REMOTE.remote.map(|remote| RemoteFacts { knows_settings: true, ..remote });
+    assert_eq!(
+        check(&Facts { remote: known, ..REMOTE }, Intent::Forecast),
+        Ok(()),
+        "flown by the embedded one"
+    );
     let remote = |is_ready, has_plans| Facts {
-        remote: Some(RemoteFacts { is_ready, has_plans, opens_cli: false, is_in_steps: false }),
+        remote: REMOTE.remote.map(|remote| RemoteFacts { is_ready, has_plans, ..remote }),
         ..REMOTE
     };
     assert_eq!(check(&remote(false, false), Intent::Fly), Err(Refusal::Now(NOT_KNOWN_YET)));
@@ -157,7 +169,7 @@ fn a_real_craft_is_read_and_changed_with_permission() {
         (Intent::Reset, NOTHING_SIMULATED),
         (Intent::World, NOTHING_SIMULATED),
         (Intent::Line(Impact::Forbidden(NOTHING_MOVES)), NOTHING_MOVES),
-        (Intent::Forecast, CONTROLLER_IS_REMOTE),
+        (Intent::Forecast, SETTINGS_UNKNOWN),
         (Intent::FlyAhead, CONTROLLER_IS_REMOTE),
     ];
     assert_eq!(refused(&Facts { access: Access::Changing, ..REMOTE }), table(&never));
@@ -166,8 +178,8 @@ fn a_real_craft_is_read_and_changed_with_permission() {
         assert_eq!(check(&reading, intent).unwrap_err().to_string(), NOT_PERMITTED);
     }
     assert_eq!(refused(&reading).len(), never.len() + unpermitted.len());
-    let opens = RemoteFacts { is_ready: true, has_plans: true, opens_cli: true, is_in_steps: false };
-    let opening = Facts { remote: Some(opens), ..reading };
+    let opens = REMOTE.remote.map(|remote| RemoteFacts { opens_cli: true, ..remote });
+    let opening = Facts { remote: opens, ..reading };
     for intent in [Intent::Download, Intent::Line(Impact::Reads)] {
         assert_eq!(check(&opening, intent), Err(Refusal::Access(Denial::NotPermitted)));
     }

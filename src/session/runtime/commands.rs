@@ -7,6 +7,8 @@ use super::Session;
 use super::interface::UploadTo;
 use super::limits::refuse_command;
 use crate::fc::Access;
+use crate::flight::forecast::SETTINGS_UNKNOWN;
+use crate::lookahead::VehicleCopy;
 use crate::session::command::Command;
 use crate::session::flight_feed::FlightPart;
 use crate::session::policy::{self, Facts, Intent, RemoteFacts};
@@ -24,6 +26,10 @@ impl Session {
                 // Its view is shown before the next seek.
                 return;
             }
+        }
+        while let Some(command) = self.orders.take(context) {
+            self.changed = true;
+            self.carry_out(command, now);
         }
         self.quit |= self.commands.has_ended();
     }
@@ -81,8 +87,8 @@ impl Session {
                 let changed = self.vehicle.apply(&VehicleCommand::World(change)).accepted();
                 reply.send(changed.map_err(|refusal| refusal.to_string()));
             }
-            Command::CopyVehicle { reply, .. } => {
-                let copy = self.copy_for_forecast();
+            Command::CopyVehicle { continues, reply } => {
+                let copy = if continues { self.copy_for_forecast() } else { self.copy_for_estimate() };
                 reply.send(copy);
             }
             Command::RecordedFlight(reply) => reply.send(self.recorded_flight()),
@@ -92,6 +98,27 @@ impl Session {
             Command::Curves { reply, .. } => reply.send(Err(policy::NO_FILE.to_owned())),
             Command::Quit => self.quit = true,
         }
+    }
+
+    /// Returns a copy of the vehicle for flights from home. A remote firmware is replaced by the embedded one with its
+    /// settings.
+    ///
+    /// # Errors
+    /// Returns the reason as a sentence if there is none.
+    fn copy_for_estimate(&mut self) -> Result<VehicleCopy, String> {
+        if self.vehicle.embedded().is_some() {
+            return self.copy_for_forecast();
+        }
+        let twin = self.vehicle.twin().map_err(|error| error.to_string())?;
+        let twin = Box::new(twin.ok_or(SETTINGS_UNKNOWN)?);
+        if !std::mem::replace(&mut self.has_said_twin, true) {
+            let profile = twin.controller().settings_view().unwrap_or_default().profile;
+            self.notice(format!(
+                "Estimates and checks of the plan fly the embedded firmware in the profile {profile}, with the settings of \
+                 the craft's autopilot and with starter modes."
+            ));
+        }
+        Ok(VehicleCopy { vehicle: twin, takeoff_m: self.takeoff_m, again: None })
     }
 
     /// Returns the facts on which the policy depends.

@@ -1,5 +1,6 @@
 use tokio::sync::oneshot;
 
+use std::sync::Arc;
 use std::task::Waker;
 
 use super::*;
@@ -9,6 +10,7 @@ use crate::firmware::cli::Interpreter;
 use crate::firmware::config::Configuration;
 use crate::firmware::{Firmware, FirmwareOptions};
 use crate::flight::FlightSetup;
+use crate::flight::forecast::SETTINGS_UNKNOWN;
 use crate::geo::LatLon;
 use crate::link::FcStream;
 use crate::lookahead::{FlownAgain, Progress};
@@ -17,6 +19,7 @@ use crate::session::ReplyTo;
 use crate::session::command::Seek;
 use crate::signals::SimTime;
 use crate::sim::WorldConfig;
+use crate::telemetry::FirmwareProfile;
 use crate::timeline::MarkKind;
 use crate::vehicle::{LateAnswer, RemoteRequest, RemoteTelemetry, VehicleConfig};
 
@@ -463,4 +466,23 @@ fn the_hazards_of_an_uploaded_plan_are_reported_before_the_answer() {
     commands.try_send(Command::Upload { name: String::new(), plan, settings: Vec::new(), reply }).unwrap();
     session.take_commands(Duration::ZERO, &mut Context::from_waker(Waker::noop()));
     assert!(answered.try_recv().unwrap() > 0, "the notices of the plan come first");
+}
+
+#[test]
+fn a_plan_is_estimated_by_the_embedded_firmware_with_the_settings_of_the_remote_one() {
+    let mut rig = Rig::new();
+    let copy = |rig: &mut Rig| {
+        let (reply, copy) = ReplyTo::channel();
+        rig.commands.try_send(Command::CopyVehicle { continues: false, reply }).unwrap();
+        rig.take_commands();
+        copy.blocking_recv().unwrap()
+    };
+    assert_eq!(copy(&mut rig).unwrap_err(), SETTINGS_UNKNOWN);
+    let mut configuration = Configuration::default();
+    configuration.settings.set_number("ap_profile", 1).unwrap();
+    let configuration = Some(Arc::new(configuration));
+    rig.mailbox().deliver_telemetry(RemoteTelemetry { configuration, ..RemoteTelemetry::default() });
+    let copied = copy(&mut rig).unwrap();
+    assert_eq!(copied.vehicle.controller().profile(), Some(FirmwareProfile::Master));
+    assert!(copied.again.is_none() && rig.session.has_said_twin);
 }

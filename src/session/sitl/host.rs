@@ -20,6 +20,7 @@ use crate::session::links::{Links, MotorTargets, MotorsError};
 use crate::session::{Command, Handle, SessionConfig, start};
 use crate::sim::{WorldConfig, WorldError};
 use crate::storage::{StorageError, Store};
+use crate::telemetry::FirmwareProfile;
 use crate::telemetry::{EventKind, FirmwareEvent, LinkState, NavEvent, Snapshot};
 use crate::vehicle::{Vehicle, VehicleCommand, VehicleConfig};
 
@@ -43,6 +44,8 @@ pub struct SitlConfig {
     pub fdm: FdmLinkConfig,
     /// The order in which the simulator's model expects the motors.
     pub motor_order: MotorOrder,
+    /// The laws of the autopilot, instead of the stored choice. They are stored, too.
+    pub profile: Option<FirmwareProfile>,
     /// `true` to exit instead of restarting the firmware.
     pub exit_on_reboot: bool,
 }
@@ -208,7 +211,14 @@ fn boot(
     store: &mut Store,
     print: &mut impl FnMut(OutputLine),
 ) -> Result<Vehicle, WorldError> {
-    let loaded = store.load();
+    let mut loaded = store.load();
+    if let Some(profile) =
+        config.profile.filter(|profile| *profile != loaded.configuration.settings.profile())
+    {
+        loaded.configuration.settings.set_profile(profile);
+        // It is stored, because the firmware reads its settings again when it restarts.
+        loaded.findings.extend(store.save(&loaded.configuration).err().map(|error| error.to_string()));
+    }
     loaded.findings.into_iter().for_each(|finding| print(OutputLine::Err(finding)));
     if let Some(StorageError::Protected { .. }) = store.refusal() {
         let hint = "[SITL] --overwrite-config lets save replace it; --config FILE loads your settings.";

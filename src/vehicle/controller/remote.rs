@@ -4,11 +4,13 @@
 //! them out and delivers motor commands, telemetry, events and answers.
 
 use std::collections::{BTreeSet, VecDeque};
+use std::sync::Arc;
 
 use strum::{EnumCount as _, IntoEnumIterator as _};
 
 use super::{Answer, LateAnswer, Ticket};
 use crate::firmware::cli::CliMode;
+use crate::firmware::config::Configuration;
 use crate::firmware::rx::Sources;
 use crate::pilot::PilotFacts;
 use crate::plan::{AltitudeReference, FlightPlan};
@@ -67,6 +69,8 @@ pub struct RemoteTelemetry {
     pub nav: Option<NavTelemetry>,
     /// Settings that displays and checks need.
     pub settings: Option<SettingsView>,
+    /// The configuration of an embedded firmware with the settings that were read, for flights ahead of time.
+    pub configuration: Option<Arc<Configuration>>,
     /// Stored plan, with altitudes above home.
     pub stored_plan: Option<FlightPlan>,
     /// Its own reference of waypoint altitudes.

@@ -27,6 +27,8 @@ impl SourceFile {
     /// Returns the path of the file's module from the crate's root.
     pub(crate) fn module(&self) -> Vec<String> {
         let path = self.name.trim_end_matches(".rs");
+        // The first page of a room that is a crate of its own.
+        let path = path.strip_suffix("/lib").unwrap_or(path);
         if ["core", "lib"].contains(&path) {
             Vec::new()
         } else {

@@ -69,6 +69,7 @@ impl Rig {
             build: BuildInfo::default(),
             fdm: FdmLinkConfig::default(),
             motor_order: MotorOrder::Native,
+            profile: None,
             exit_on_reboot,
         };
         let (says, said) = mpsc::unbounded_channel();
@@ -246,6 +247,7 @@ async fn a_port_in_use_ends_it_with_the_way_out() {
         build: BuildInfo::default(),
         fdm: FdmLinkConfig::default(),
         motor_order: MotorOrder::Native,
+        profile: None,
         exit_on_reboot: false,
     };
     let mut lines = Vec::new();

@@ -482,3 +482,15 @@ fn a_configuration_file_that_is_none_is_refused_and_nothing_is_stored() {
     }
     assert!(!sandbox.names().contains(&"eeprom.bin".to_owned()));
 }
+
+#[test]
+fn sitl_flies_by_the_profile_of_its_options_and_keeps_it() {
+    let sandbox = Sandbox::new();
+    sandbox.write("ask.txt", "get ap_profile\n");
+    let ran = sandbox.run(&["sitl", "--config", "ask.txt"]).exits(0);
+    assert!(ran.out.contains("ap_profile = GUIDE"), "{}", ran.out);
+    for profile in [&["--profile", "master"][..], &[]] {
+        let ran = sandbox.run(&[&["sitl", "--config", "ask.txt"], profile].concat()).exits(0);
+        assert!(ran.out.contains("ap_profile = MASTER"), "{profile:?}: {}", ran.out);
+    }
+}

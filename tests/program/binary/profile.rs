@@ -85,7 +85,7 @@ fn a_rescue_that_falls_is_reported_with_the_lines_that_mend_it() {
     sandbox.write(
         "mended.txt",
         &(sandbox.read("diff.txt")
-            + "set ap_altitude_p = 2\nset ap_altitude_d = 200\nset ap_hover_throttle = 1500\n"),
+            + "set ap_altitude_p = 2\nset ap_altitude_d = 200\nset ap_hover_throttle = 1500\nset gps_rescue_descend_rate = 50\n"),
     );
     let few = ["rescue", "mended.txt", "--distance", "40", "--directions", "1", "--json", "-"];
     let mended = sandbox.run(&few);

@@ -20,6 +20,7 @@ fn remote() -> RemoteView {
         state: RemoteState::Ready,
         access: Access::Reading,
         has_plans: true,
+        knows_settings: true,
         opens_cli: false,
         in_cli: false,
         connection: 1,

@@ -4,6 +4,10 @@ use super::super::Role::{Carry, Live};
 use super::super::Scope;
 use super::super::Width::{I16, U8, U16};
 use super::{ACC_HARDWARE, Group, array, choice, number, switch};
+use crate::firmware::settings::Role;
+use crate::telemetry::FirmwareProfile;
+
+const IN_MASTER: Role = Role::Only(FirmwareProfile::Master);
 
 #[rustfmt::skip]
 pub(super) const GYRO: Group = Group::new("Gyro", Scope::Master, &[
@@ -39,10 +43,10 @@ pub(super) const ACCELEROMETER: Group = Group::new("Accelerometer", Scope::Maste
 
 #[rustfmt::skip]
 pub(super) const MAGNETOMETER: Group = Group::new("Magnetometer", Scope::Master, &[
-    choice("align_mag", U8, &["DEFAULT", "CW0", "CW90", "CW180", "CW270", "CW0FLIP", "CW90FLIP", "CW180FLIP", "CW270FLIP", "CUSTOM"], 0, Carry, "Mounting orientation of the compass.").hardware(),
-    number("mag_align_roll", I16, -3600, 3600, 0, Carry, "Custom compass mounting, roll, 0.1 deg.").hardware(),
-    number("mag_align_pitch", I16, -3600, 3600, 0, Carry, "Custom compass mounting, pitch, 0.1 deg.").hardware(),
-    number("mag_align_yaw", I16, -3600, 3600, 0, Carry, "Custom compass mounting, yaw, 0.1 deg.").hardware(),
+    choice("align_mag", U8, &["DEFAULT", "CW0", "CW90", "CW180", "CW270", "CW0FLIP", "CW90FLIP", "CW180FLIP", "CW270FLIP", "CUSTOM"], 0, IN_MASTER, "Mounting orientation of the compass; CUSTOM takes mag_align_roll, _pitch and _yaw.").hardware(),
+    number("mag_align_roll", I16, -3600, 3600, 0, IN_MASTER, "Custom compass mounting, roll, 0.1 deg.").hardware(),
+    number("mag_align_pitch", I16, -3600, 3600, 0, IN_MASTER, "Custom compass mounting, pitch, 0.1 deg.").hardware(),
+    number("mag_align_yaw", I16, -3600, 3600, 0, IN_MASTER, "Custom compass mounting, yaw, 0.1 deg.").hardware(),
     choice("mag_bustype", U8, &["NONE", "I2C", "SPI", "SLAVE"], 0, Carry, "Bus of a real compass.").hardware(),
     number("mag_i2c_device", U8, 0, 0, 0, Carry, "I2C bus of a real compass.").hardware(),
     number("mag_i2c_address", U8, 0, 119, 0, Carry, "I2C address of a real compass.").hardware(),

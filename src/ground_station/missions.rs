@@ -1,0 +1,203 @@
+//! Plans as missions, and missions as plans.
+//!
+//! Both ways use the format of waypoint files, whose items are those of the link, with its loss report.
+
+use std::fmt::Write as _;
+
+use crate::geo::LatLon;
+use crate::mavlink::MissionItem;
+use crate::mavlink::state::GeoPosition;
+use crate::mavlink::value::{MissionResult, position_frame};
+use crate::plan::FlightPlan;
+use crate::plan::format::loss::Severity;
+use crate::plan::format::{self, Format, HomePosition, PlanFile, ReadOptions};
+
+/// The first line of a waypoint file.
+const HEADER: &str = "QGC WPL 110\n";
+/// The fields of an item.
+const FIELDS: usize = 12;
+/// The name of a plan from a ground station.
+pub(super) const NAME: &str = "ground station";
+
+/// Returns the items of a plan, without a home item.
+pub(super) fn items(plan: &FlightPlan, home: &GeoPosition) -> Vec<MissionItem> {
+    let position = LatLon::from_degrees(home.lat_deg, home.lon_deg);
+    let home = Some(HomePosition { position, amsl_m: Some(home.alt_amsl) });
+    let file = PlanFile { plan: plan.clone(), home, ..PlanFile::default() };
+    let written = format::write(&file, Format::QgcWpl);
+    // The first two lines are the header and home.
+    written.text().lines().skip(2).filter_map(item).collect()
+}
+
+/// Reads a line of a waypoint file.
+fn item(line: &str) -> Option<MissionItem> {
+    let fields: Vec<f64> = line.split('\t').filter_map(|field| field.trim().parse().ok()).collect();
+    let &[_, current, frame, command, p1, p2, p3, p4, lat, lon, alt, on] = fields.as_slice() else {
+        return None;
+    };
+    let position = LatLon::from_degrees(lat, lon);
+    Some(MissionItem {
+        frame: frame as u8,
+        command: command as u16,
+        params: [p1, p2, p3, p4].map(|param| param as f32),
+        x: position.lat_e7,
+        y: position.lon_e7,
+        z: alt as f32,
+        is_current: current != 0.0,
+        autocontinue: on != 0.0,
+    })
+}
+
+/// Returns the plan of a mission and the differences as sentences.
+///
+/// # Errors
+/// Fails with the result and the reasons if the mission has no place in a plan.
+pub(super) fn plan(
+    items: &[MissionItem],
+    home: Option<&GeoPosition>,
+) -> Result<(FlightPlan, Vec<String>), (MissionResult, Vec<String>)> {
+    let needs_home = items.iter().any(|item| position_frame::is_global(item.frame));
+    let Some(home) = home.copied().or((!needs_home).then(GeoPosition::default)) else {
+        let why = "The craft has no home yet, from which altitudes count: wait for its fix.";
+        return Err((MissionResult::UnsupportedFrame, vec![why.to_owned()]));
+    };
+    let position = LatLon::from_degrees(home.lat_deg, home.lon_deg);
+    let text = text(items, position, home.alt_amsl);
+    let options = ReadOptions {
+        home: Some(HomePosition { position, amsl_m: Some(home.alt_amsl) }),
+        ..ReadOptions::default()
+    };
+    match format::read(NAME, text.as_bytes(), Format::QgcWpl, &options) {
+        Ok(file) if file.losses.worst() == Some(Severity::Refused) => {
+            Err((MissionResult::Unsupported, lines(&file)))
+        }
+        Ok(file) => Ok((file.plan.clone(), lines(&file))),
+        Err(errors) => {
+            let reason = |error: &format::PlanError| {
+                format!("Item {}: {}.", error.line.saturating_sub(3), error.message)
+            };
+            Err((MissionResult::Unsupported, errors.iter().map(reason).collect()))
+        }
+    }
+}
+
+/// Returns the differences that matter, as sentences. Items count from 0.
+fn lines(file: &PlanFile) -> Vec<String> {
+    let matters = |severity: Severity| severity >= Severity::Assumed;
+    let findings = file.losses.findings.iter().filter(|finding| matters(finding.severity));
+    findings.map(|finding| finding.to_string().split_whitespace().collect::<Vec<_>>().join(" ")).collect()
+}
+
+/// Returns a mission as a waypoint file.
+fn text(items: &[MissionItem], home: LatLon, home_amsl_m: f64) -> String {
+    let mut text = HEADER.to_owned();
+    let home = MissionItem {
+        frame: position_frame::GLOBAL,
+        command: 16,
+        params: [0.0; 4],
+        x: home.lat_e7,
+        y: home.lon_e7,
+        z: home_amsl_m as f32,
+        is_current: true,
+        autocontinue: true,
+    };
+    for (number, item) in std::iter::once(&home).chain(items).enumerate() {
+        let [p1, p2, p3, p4] = item.params.map(|param| if param.is_finite() { param } else { 0.0 });
+        let place = LatLon::new(item.x, item.y);
+        let (lat, lon) = match position_frame::is_global(item.frame) {
+            true => (format!("{:.7}", place.lat_deg()), format!("{:.7}", place.lon_deg())),
+            false => (item.x.to_string(), item.y.to_string()),
+        };
+        let altitude = if item.z.is_finite() { item.z } else { 0.0 };
+        let on = u8::from(item.autocontinue);
+        // Writing to a string does not fail.
+        let _ = writeln!(
+            text,
+            "{number}\t0\t{}\t{}\t{p1}\t{p2}\t{p3}\t{p4}\t{lat}\t{lon}\t{altitude}\t{on}",
+            item.frame, item.command
+        );
+        debug_assert_eq!(text.lines().last().map(|line| line.split('\t').count()), Some(FIELDS));
+    }
+    text
+}
+
+/// Returns the item of the waypoint with this index: both count their positions alike.
+pub(super) fn item_of_waypoint(items: &[MissionItem], plan: &FlightPlan, waypoint: u16) -> Option<u16> {
+    let waypoints = plan.waypoints.get(..=usize::from(waypoint))?;
+    let positions = waypoints.iter().filter(|waypoint| waypoint.kind.is_positional()).count();
+    let has_position = |item: &&(usize, &MissionItem)| is_position(item.1);
+    let found = items.iter().enumerate().filter(|item| has_position(&item)).nth(positions.checked_sub(1)?)?;
+    u16::try_from(found.0).ok()
+}
+
+/// Returns the waypoint of an item: the one at its position, or the next one.
+pub(super) fn waypoint_of_item(items: &[MissionItem], plan: &FlightPlan, item: u16) -> Option<u8> {
+    let before = items.get(..usize::from(item))?.iter().filter(|item| is_position(item)).count();
+    let waypoints = plan.waypoints.iter().enumerate();
+    let found = waypoints.filter(|(_, waypoint)| waypoint.kind.is_positional()).nth(before)?;
+    u8::try_from(found.0).ok()
+}
+
+/// Returns `true` for an item at which the craft arrives.
+fn is_position(item: &MissionItem) -> bool {
+    matches!(item.command, 16..=19 | 21 | 22 | 31)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::plan::builtin::BuiltinPlan;
+
+    const HOME: GeoPosition = GeoPosition { lat_deg: 40.4635, lon_deg: -79.5182, alt_amsl: 300.0 };
+
+    #[test]
+    fn a_plan_goes_to_a_ground_station_and_comes_back_equal() {
+        for name in ["square", "hold-orbit", "flyover"] {
+            let plan = BuiltinPlan::find(name).unwrap().read().unwrap().plan;
+            let items = items(&plan, &HOME);
+            let (back, lines) = super::plan(&items, Some(&HOME)).unwrap();
+            let positions = |plan: &FlightPlan| {
+                plan.waypoints.iter().map(|waypoint| (waypoint.kind, waypoint.position)).collect::<Vec<_>>()
+            };
+            assert_eq!(positions(&back), positions(&plan), "{name}: {lines:?}");
+            assert_eq!(super::items(&back, &HOME), items, "{name}");
+        }
+    }
+
+    #[test]
+    fn waypoints_and_items_count_their_positions_alike() {
+        let plan = BuiltinPlan::find("alt-change").unwrap().read().unwrap().plan;
+        let items = items(&plan, &HOME);
+        for (index, waypoint) in plan.waypoints.iter().enumerate().filter(|(_, at)| at.kind.is_positional()) {
+            let item = item_of_waypoint(&items, &plan, index as u16).unwrap();
+            assert_eq!(
+                (items[usize::from(item)].x, items[usize::from(item)].y),
+                (waypoint.position.lat_e7, waypoint.position.lon_e7)
+            );
+            assert_eq!(waypoint_of_item(&items, &plan, item), Some(index as u8));
+        }
+        assert_eq!(item_of_waypoint(&items, &plan, 200), None);
+        assert_eq!(waypoint_of_item(&items, &plan, 200), None);
+    }
+
+    #[test]
+    fn numbers_that_are_none_and_unknown_commands_are_answered() {
+        let item = MissionItem {
+            frame: 3,
+            command: 16,
+            params: [f32::NAN; 4],
+            x: 404_640_000,
+            y: -795_182_000,
+            z: f32::NAN,
+            is_current: false,
+            autocontinue: true,
+        };
+        assert_eq!(plan(&[item], Some(&HOME)).unwrap().0.waypoints.len(), 1);
+        assert_eq!(plan(&[item], None).unwrap_err().0, MissionResult::UnsupportedFrame);
+        let unknown = MissionItem { command: 60_000, ..item };
+        match plan(&[item, unknown], Some(&HOME)) {
+            Ok((_, lines)) => assert!(lines.iter().any(|line| line.contains("60000")), "{lines:?}"),
+            Err((result, lines)) => assert!(result != MissionResult::Accepted && !lines.is_empty()),
+        }
+    }
+}
