@@ -27,7 +27,7 @@ const ARM_WITHIN: Duration = Duration::from_secs(3);
 /// The time for which sticks count that the session has not shown yet.
 const CONFIRM: Duration = Duration::from_millis(500);
 
-/// What a request waits for.
+/// The outcome for which a request waits.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Until {
     Now,

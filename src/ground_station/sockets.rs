@@ -30,7 +30,7 @@ pub struct DoorError {
     error: io::Error,
 }
 
-/// What comes from the sockets.
+/// An event of the sockets.
 #[derive(Debug)]
 pub(super) enum Incoming {
     /// A TCP client connected; packets for it go into the queue.

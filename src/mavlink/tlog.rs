@@ -39,7 +39,7 @@ impl LogWriter {
     }
 }
 
-/// What the beginning of a buffer led to.
+/// The result of reading the beginning of a buffer.
 #[allow(clippy::large_enum_variant, reason = "a box would cost an allocation a record")]
 enum Step {
     Record(Record),

@@ -30,11 +30,11 @@ pub(super) struct Command {
     frame: Option<u8>,
     /// The number of a mode as a heartbeat has it.
     custom_mode: Option<u32>,
-    /// What is the same in a repetition only.
+    /// The part that only a repetition has in common with its command.
     bits: [u32; 7],
 }
 
-/// What a command leads to.
+/// The effect of a command.
 enum Outcome {
     /// These messages follow the acknowledgement.
     Messages(Vec<Message>),

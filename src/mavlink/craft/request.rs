@@ -1,4 +1,4 @@
-//! What a craft is asked to do, and the answers that ground stations wait for.
+//! The requests to a craft, and the answers that ground stations wait for.
 
 use super::super::mission::MissionItem;
 use super::super::state::GeoPosition;
@@ -18,13 +18,13 @@ pub struct Ticket(u32);
 pub struct Request {
     /// The number for the answer.
     pub ticket: Ticket,
-    /// Who asks.
+    /// The sender.
     pub peer: PeerId,
-    /// What is asked.
+    /// The request itself.
     pub kind: RequestKind,
 }
 
-/// What is asked.
+/// The kinds of requests.
 #[derive(Debug, Clone, PartialEq)]
 pub enum RequestKind {
     /// Arm, if the checks pass.
@@ -109,7 +109,7 @@ pub(super) struct Sender {
     pub(super) component: u8,
 }
 
-/// What follows the answer of the host.
+/// The message that follows the answer of the host.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Reply {
     /// The acknowledgement of a command, with the bits of its parameters to recognise a repetition.

@@ -15,7 +15,7 @@ const MAVLINK_VERSION: u8 = 3;
 const UNKNOWN_U8: u8 = u8::MAX;
 const UNKNOWN_U16: u16 = u16::MAX;
 
-/// What messages are made of.
+/// The sources of messages.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Source<'a> {
     pub(super) identity: Identity,

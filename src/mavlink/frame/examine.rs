@@ -7,7 +7,7 @@ use super::{CHECKSUM, Frame, HEADER_V1, HEADER_V2, SIGNATURE, START_V1, START_V2
 /// The bit of the incompatibility flags that announces a signature.
 const SIGNED: u8 = 1;
 
-/// What bytes begin with. Lengths are those of the whole frame, bytes.
+/// The beginning of some bytes. Lengths are those of the whole frame, bytes.
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[allow(clippy::large_enum_variant, reason = "a box would cost an allocation a frame")]
 pub(in super::super) enum Found {

@@ -1,4 +1,4 @@
-//! What a host orders, and what it learns.
+//! The orders of a host, and the events for it.
 
 use super::{OrderEnd, OrderId, PilotText, TransferEnd};
 

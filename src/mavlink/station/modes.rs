@@ -118,7 +118,7 @@ const BETAFLIGHT: Table = &[
     (7, "Failsafe"),
 ];
 
-/// What a heartbeat says about the craft and its mode.
+/// The craft and its mode, from a heartbeat.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) struct ModeNumber {
     pub(super) autopilot: u8,

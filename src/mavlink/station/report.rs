@@ -1,4 +1,4 @@
-//! What a ground station knows about a craft. SI units; the world is north, east, down; the body is forward, right, down.
+//! The known state of a craft. SI units; the world is north, east, down; the body is forward, right, down.
 
 use std::time::Duration;
 
@@ -88,7 +88,7 @@ pub struct SensorStatus {
     pub load: f64,
 }
 
-/// What a ground station knows about a craft. `None` did not arrive.
+/// The known state of a craft. `None` did not arrive.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct CraftReport {
     /// The heartbeat.

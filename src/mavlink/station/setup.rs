@@ -1,4 +1,4 @@
-//! What a station asks of a craft, in the form that its autopilot understands.
+//! The requests of a station to a craft, in the form that its autopilot understands.
 
 use std::time::Duration;
 

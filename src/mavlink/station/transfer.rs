@@ -37,7 +37,7 @@ pub enum TransferEnd {
     TooLong(MissionKind, u16),
 }
 
-/// What a transfer knows about the craft.
+/// The facts about the craft that a transfer needs.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) struct Habits {
     pub(super) system: u8,

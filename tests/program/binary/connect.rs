@@ -150,8 +150,6 @@ fn all_settings_of_a_remote_firmware_are_read_and_changed_in_the_same_panel() {
     assert!(p_roll.contains('●') && p_roll.contains("60"), "{p_roll}");
     terminal.send("/tilt of the auto\r");
     terminal.until("the setting", |terminal| row(terminal, "ap_max_angle").contains("50"));
-    terminal.send("w");
-    terminal.until_shown("the embedded firmware");
     terminal.send("+");
     terminal.until_shown("Change the craft?");
     assert!(craft.line("get ap_max_angle").contains("= 50"), "nothing is changed before the answer");
