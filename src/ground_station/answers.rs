@@ -8,6 +8,7 @@ use super::controls::Until;
 use super::texts::ascii;
 use crate::fc::UploadReport;
 use crate::mavlink::craft::Ticket;
+use crate::plan::FlightPlan;
 use crate::session::SessionView;
 use crate::session::command::CliOutput;
 
@@ -18,9 +19,11 @@ const MAX_LINES: usize = 12;
 pub(super) enum Waiting {
     /// A switch was moved; the time after which it had no effect.
     Switch(Ticket, Until, Duration),
-    /// A mission is uploaded, with the lines about it.
-    Upload(Ticket, oneshot::Receiver<Result<UploadReport, String>>, Vec<String>),
-    /// A setting is changed: the name on the link, the old value, the answer of the command line.
+    /// A mission is uploaded: the plan, and the lines about it.
+    Upload(Ticket, oneshot::Receiver<Result<UploadReport, String>>, FlightPlan, Vec<String>),
+    /// A mission was uploaded and is to be shown as the stored plan; the time after which that does not matter.
+    Shown(Ticket, FlightPlan, Vec<String>, Duration),
+    /// A setting is changed: its name, the new value, the answer of the command line.
     Setting(Ticket, String, f32, oneshot::Receiver<CliOutput>),
 }
 
@@ -31,6 +34,16 @@ pub(super) fn taken<T>(receiver: &mut oneshot::Receiver<T>) -> Option<Result<T, 
         Err(oneshot::error::TryRecvError::Empty) => None,
         Err(oneshot::error::TryRecvError::Closed) => Some(Err(())),
     }
+}
+
+/// Returns what the command line says of a `set`: its first line as the error if the value was not taken.
+pub(super) fn as_set(answer: Result<CliOutput, ()>) -> Result<(), String> {
+    let text = answer.map(|answer| answer.text).unwrap_or_default();
+    if text.contains("set to") {
+        return Ok(());
+    }
+    let said = text.lines().map(str::trim).find(|line| !line.is_empty());
+    Err(said.unwrap_or("The craft did not answer.").to_owned())
 }
 
 /// Returns the first lines, and the number of the others.

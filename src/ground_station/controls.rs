@@ -7,7 +7,7 @@ use crate::mavlink::craft::FlightMode;
 use crate::mavlink::value::CommandResult;
 use crate::session::policy::{self, Facts, Intent};
 use crate::session::{Command, SessionView};
-use crate::signals::RcFrame;
+use crate::signals::{RcFrame, RcSource};
 use crate::telemetry::switch::Switch;
 use crate::telemetry::{ArmingFlag, ArmingFlags, FirmwareProfile, InFlightCommand, Mode};
 use crate::vehicle::VehicleCommand;
@@ -225,7 +225,10 @@ impl Controls {
             FlightMode::ReturnHome => return Ok((self.return_home(view, now)?, Until::Now)),
             FlightMode::Landing => return Ok((self.land(view, now)?, Until::Now)),
             FlightMode::TakeOff | FlightMode::Failsafe => {
-                return Err((CommandResult::Unsupported, format!("{mode:?} is no mode to switch to.")));
+                return Err((
+                    CommandResult::Unsupported,
+                    "No switch selects a take-off or a failsafe.".to_owned(),
+                ));
             }
             FlightMode::Acro => &[],
             FlightMode::Horizon => &[Mode::Horizon],
@@ -288,7 +291,7 @@ impl Controls {
             self.procedure = None;
             return Vec::new();
         }
-        if !craft.arming_flags().causes().is_empty() || view.rc_cut {
+        if !craft.arming_flags().causes().is_empty() || (view.rc_cut && !has_own_rc(view)) {
             return Vec::new();
         }
         self.procedure = None;
@@ -311,12 +314,19 @@ impl Controls {
         self.sent = Some((frame, now));
         let mut commands = Vec::new();
         // Without a screen nobody has the sticks until a ground station arms.
-        if view.rc_cut && !view.vehicle.craft.is_armed() {
+        if view.rc_cut && !view.vehicle.craft.is_armed() && !has_own_rc(view) {
             commands.push(Command::Vehicle(VehicleCommand::CutRc(false)));
         }
         commands.push(Command::Vehicle(VehicleCommand::Sticks(frame)));
         commands
     }
+}
+
+/// Returns `true` while a program sends RC, whose loss is to be a loss of RC. The switches of the virtual transmitter are
+/// part of the frames of a ground station.
+fn has_own_rc(view: &SessionView) -> bool {
+    let craft = &view.vehicle.craft;
+    craft.rc_source == Some(RcSource::Udp) && craft.rc_link == Some(true)
 }
 
 /// Returns the arming disable flags that the sticks of a ground station clear.

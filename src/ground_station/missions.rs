@@ -19,14 +19,43 @@ const FIELDS: usize = 12;
 /// The name of a plan from a ground station.
 pub(super) const NAME: &str = "ground station";
 
-/// Returns the items of a plan, without a home item.
-pub(super) fn items(plan: &FlightPlan, home: &GeoPosition) -> Vec<MissionItem> {
-    let position = LatLon::from_degrees(home.lat_deg, home.lon_deg);
-    let home = Some(HomePosition { position, amsl_m: Some(home.alt_amsl) });
-    let file = PlanFile { plan: plan.clone(), home, ..PlanFile::default() };
-    let written = format::write(&file, Format::QgcWpl);
-    // The first two lines are the header and home.
-    written.text().lines().skip(2).filter_map(item).collect()
+/// The mission of a plan.
+#[derive(Debug, Clone, Default)]
+pub(super) struct Mission {
+    /// The items, without a home item.
+    pub(super) items: Vec<MissionItem>,
+    /// The waypoint of each item.
+    sources: Vec<usize>,
+}
+
+impl Mission {
+    /// Returns the mission of a plan. Altitudes of the plan are above home.
+    pub(super) fn of_plan(plan: &FlightPlan, home: &GeoPosition) -> Self {
+        let position = LatLon::from_degrees(home.lat_deg, home.lon_deg);
+        let home = Some(HomePosition { position, amsl_m: Some(home.alt_amsl) });
+        let file = PlanFile { plan: plan.clone(), home, ..PlanFile::default() };
+        let written = format::write(&file, Format::QgcWpl);
+        // The first two lines are the header and home.
+        let items = written.text().lines().skip(2).filter_map(item).collect();
+        Self { items, sources: format::item_sources(&plan.waypoints, position) }
+    }
+
+    /// Returns the item at which the craft arrives at a waypoint; `None` if the waypoint has none.
+    pub(super) fn item_of_waypoint(&self, waypoint: u16) -> Option<u16> {
+        let mut positions = self.positions(0);
+        positions.find(|(_, source)| *source == usize::from(waypoint)).map(|(item, _)| item)
+    }
+
+    /// Returns the waypoint of an item, or the next one for an item without a position.
+    pub(super) fn waypoint_of_item(&self, item: u16) -> Option<u8> {
+        self.positions(item).next().and_then(|(_, source)| u8::try_from(source).ok())
+    }
+
+    /// Returns the items with a position from one on, and their waypoints.
+    fn positions(&self, from: u16) -> impl Iterator<Item = (u16, usize)> {
+        let numbered = (0..).zip(self.items.iter().zip(&self.sources)).skip(usize::from(from));
+        numbered.filter(|(_, (item, _))| is_position(item)).map(|(number, (_, source))| (number, *source))
+    }
 }
 
 /// Reads a line of a waypoint file.
@@ -121,23 +150,6 @@ fn text(items: &[MissionItem], home: LatLon, home_amsl_m: f64) -> String {
     text
 }
 
-/// Returns the item of the waypoint with this index: both count their positions alike.
-pub(super) fn item_of_waypoint(items: &[MissionItem], plan: &FlightPlan, waypoint: u16) -> Option<u16> {
-    let waypoints = plan.waypoints.get(..=usize::from(waypoint))?;
-    let positions = waypoints.iter().filter(|waypoint| waypoint.kind.is_positional()).count();
-    let has_position = |item: &&(usize, &MissionItem)| is_position(item.1);
-    let found = items.iter().enumerate().filter(|item| has_position(&item)).nth(positions.checked_sub(1)?)?;
-    u16::try_from(found.0).ok()
-}
-
-/// Returns the waypoint of an item: the one at its position, or the next one.
-pub(super) fn waypoint_of_item(items: &[MissionItem], plan: &FlightPlan, item: u16) -> Option<u8> {
-    let before = items.get(..usize::from(item))?.iter().filter(|item| is_position(item)).count();
-    let waypoints = plan.waypoints.iter().enumerate();
-    let found = waypoints.filter(|(_, waypoint)| waypoint.kind.is_positional()).nth(before)?;
-    u8::try_from(found.0).ok()
-}
-
 /// Returns `true` for an item at which the craft arrives.
 fn is_position(item: &MissionItem) -> bool {
     matches!(item.command, 16..=19 | 21 | 22 | 31)
@@ -147,37 +159,62 @@ fn is_position(item: &MissionItem) -> bool {
 mod tests {
     use super::*;
     use crate::plan::builtin::BuiltinPlan;
+    use crate::plan::{Seconds, Waypoint, WaypointType};
 
     const HOME: GeoPosition = GeoPosition { lat_deg: 40.4635, lon_deg: -79.5182, alt_amsl: 300.0 };
+
+    fn mission(name: &str) -> (FlightPlan, Mission) {
+        let plan = BuiltinPlan::find(name).unwrap().read().unwrap().plan;
+        let mission = Mission::of_plan(&plan, &HOME);
+        (plan, mission)
+    }
 
     #[test]
     fn a_plan_goes_to_a_ground_station_and_comes_back_equal() {
         for name in ["square", "hold-orbit", "flyover"] {
-            let plan = BuiltinPlan::find(name).unwrap().read().unwrap().plan;
-            let items = items(&plan, &HOME);
+            let (plan, Mission { items, .. }) = mission(name);
             let (back, lines) = super::plan(&items, Some(&HOME)).unwrap();
             let positions = |plan: &FlightPlan| {
                 plan.waypoints.iter().map(|waypoint| (waypoint.kind, waypoint.position)).collect::<Vec<_>>()
             };
             assert_eq!(positions(&back), positions(&plan), "{name}: {lines:?}");
-            assert_eq!(super::items(&back, &HOME), items, "{name}");
+            assert_eq!(Mission::of_plan(&back, &HOME).items, items, "{name}");
         }
     }
 
     #[test]
-    fn waypoints_and_items_count_their_positions_alike() {
-        let plan = BuiltinPlan::find("alt-change").unwrap().read().unwrap().plan;
-        let items = items(&plan, &HOME);
-        for (index, waypoint) in plan.waypoints.iter().enumerate().filter(|(_, at)| at.kind.is_positional()) {
-            let item = item_of_waypoint(&items, &plan, index as u16).unwrap();
-            assert_eq!(
-                (items[usize::from(item)].x, items[usize::from(item)].y),
-                (waypoint.position.lat_e7, waypoint.position.lon_e7)
-            );
-            assert_eq!(waypoint_of_item(&items, &plan, item), Some(index as u8));
+    fn every_waypoint_with_a_position_has_its_item_and_the_item_its_waypoint() {
+        for name in
+            ["square", "hold-orbit", "hold-none", "alt-change", "delay", "yaw-rate", "land", "takeoff"]
+        {
+            let (plan, mission) = mission(name);
+            assert_eq!(mission.items.len(), mission.sources.len());
+            for (index, waypoint) in plan.waypoints.iter().enumerate() {
+                // A take-off at home has no position of its own.
+                if !waypoint.kind.is_positional() || waypoint.position == LatLon::default() {
+                    continue;
+                }
+                let item = mission.item_of_waypoint(index as u16).unwrap();
+                let MissionItem { x, y, .. } = mission.items[usize::from(item)];
+                assert_eq!(LatLon::new(x, y), waypoint.position);
+                assert_eq!(mission.waypoint_of_item(item), Some(index as u8));
+            }
+            assert_eq!(mission.item_of_waypoint(200), None);
+            assert_eq!(mission.waypoint_of_item(200), None);
         }
-        assert_eq!(item_of_waypoint(&items, &plan, 200), None);
-        assert_eq!(waypoint_of_item(&items, &plan, 200), None);
+    }
+
+    #[test]
+    fn a_wait_before_a_landing_and_the_landing_are_one_waypoint() {
+        let position = |north: f64| LatLon::from_degrees(40.4635 + north, -79.5182);
+        let at = |kind, north| Waypoint { kind, position: position(north), ..Waypoint::default() };
+        let waits = Waypoint { duration: Seconds::new(5.0), ..at(WaypointType::Land, 0.001) };
+        let plan = FlightPlan { waypoints: [waits, at(WaypointType::Flyover, 0.002)].into_iter().collect() };
+        let mission = Mission::of_plan(&plan, &HOME);
+        let waypoints: Vec<_> =
+            (0..mission.items.len()).map(|item| mission.waypoint_of_item(item as u16)).collect();
+        assert_eq!(waypoints, [Some(0), Some(0), Some(1)]);
+        assert_eq!((mission.item_of_waypoint(0), mission.item_of_waypoint(1)), (Some(0), Some(2)));
     }
 
     #[test]

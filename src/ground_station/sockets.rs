@@ -47,8 +47,10 @@ pub(super) enum Incoming {
 #[derive(Debug)]
 pub(super) struct Sockets {
     udp: Option<UdpSocket>,
-    /// The addresses of UDP peers. The first one is where ground stations listen.
-    addresses: Vec<SocketAddr>,
+    /// The addresses of UDP peers: first those where ground stations listen, then those that have sent.
+    addresses: Vec<Option<SocketAddr>>,
+    /// The number of the former.
+    targets: u32,
     /// The queues of TCP clients.
     clients: BTreeMap<PeerId, mpsc::Sender<Vec<u8>>>,
     incoming: mpsc::Receiver<Incoming>,
@@ -71,6 +73,7 @@ impl Sockets {
         let mut sockets = Self {
             udp: None,
             addresses: Vec::new(),
+            targets: 0,
             clients: BTreeMap::new(),
             incoming,
             datagram: vec![0; 65_536],
@@ -97,7 +100,8 @@ impl Sockets {
                 if self.udp.is_none() {
                     self.udp = Some(UdpSocket::bind((LOOPBACK, 0)).await?);
                 }
-                self.addresses.push((LOOPBACK, port).into());
+                self.addresses.push(Some((LOOPBACK, port).into()));
+                self.targets += 1;
             }
             Place::Tcp(port) => {
                 let listener = TcpListener::bind((LOOPBACK, port)).await?;
@@ -110,7 +114,7 @@ impl Sockets {
 
     /// Returns the peers to which the door sends before they have sent anything.
     pub(super) fn targets(&self) -> impl Iterator<Item = PeerId> {
-        (FIRST_UDP..).take(self.addresses.len()).map(PeerId)
+        (FIRST_UDP..FIRST_UDP + self.targets).map(PeerId)
     }
 
     /// Waits for what comes next.
@@ -127,17 +131,25 @@ impl Sockets {
                 received = udp.recv_from(&mut self.datagram) => {
                     // A target without a listener is reported as an error of a later call.
                     let Ok((length, from)) = received else { continue };
-                    let known = self.addresses.iter().position(|address| *address == from);
-                    if known.is_none() && self.addresses.len() >= PEERS_MAX {
+                    let bytes = self.datagram.get(..length).unwrap_or_default();
+                    if !begins_a_frame(bytes) {
                         continue;
                     }
-                    let at = known.unwrap_or(self.addresses.len());
-                    if known.is_none() {
-                        self.addresses.push(from);
+                    let bytes = bytes.to_vec();
+                    if let Some(peer) = udp_peer(&mut self.addresses, from) {
+                        return Incoming::Bytes(peer, bytes);
                     }
-                    let bytes = self.datagram.get(..length).unwrap_or_default().to_vec();
-                    return Incoming::Bytes(PeerId(FIRST_UDP + at as u32), bytes);
                 }
+            }
+        }
+    }
+
+    /// Forgets the UDP peers that the protocol no longer knows, except those where ground stations listen.
+    pub(super) fn forget(&mut self, is_known: impl Fn(PeerId) -> bool) {
+        for (peer, address) in (FIRST_UDP..).map(PeerId).zip(&mut self.addresses).skip(self.targets as usize)
+        {
+            if !is_known(peer) {
+                *address = None;
             }
         }
     }
@@ -155,12 +167,32 @@ impl Sockets {
     pub(super) fn send(&self, peer: PeerId, packet: Vec<u8>) {
         if let Some(queue) = self.clients.get(&peer) {
             queue.try_send(packet).ok();
-        } else if let (Some(udp), Some(&address)) =
+        } else if let (Some(udp), Some(&Some(address))) =
             (&self.udp, peer.0.checked_sub(FIRST_UDP).and_then(|at| self.addresses.get(at as usize)))
         {
             udp.try_send_to(&packet, address).ok();
         }
     }
+}
+
+/// Returns the number of a UDP peer, which is noted; `None` if there are too many.
+fn udp_peer(addresses: &mut Vec<Option<SocketAddr>>, from: SocketAddr) -> Option<PeerId> {
+    let known = addresses.iter().position(|address| *address == Some(from));
+    let at = known.or_else(|| addresses.iter().position(Option::is_none)).unwrap_or(addresses.len());
+    if at >= PEERS_MAX {
+        return None;
+    }
+    if at == addresses.len() {
+        addresses.push(None);
+    }
+    *addresses.get_mut(at)? = Some(from);
+    Some(PeerId(FIRST_UDP + at as u32))
+}
+
+/// Returns `true` if bytes may be those of a ground station. A web page can send a request to any TCP port, and by WebRTC a
+/// datagram to any UDP port, with text of its own inside. The first byte of all these begins no frame.
+fn begins_a_frame(bytes: &[u8]) -> bool {
+    bytes.first().is_some_and(|&byte| frame::is_start(byte))
 }
 
 /// Serves TCP clients until the door closes.
@@ -208,8 +240,7 @@ async fn serve(mut stream: TcpStream, peer: PeerId, sender: &mpsc::Sender<Incomi
         let (mut buffer, mut is_first) = (vec![0; READ], true);
         while let Ok(length @ 1..) = from.read(&mut buffer).await {
             let bytes = buffer.get(..length).unwrap_or_default();
-            // A web page can send a request to any port: its first byte begins no frame.
-            if is_first && !bytes.first().is_some_and(|&byte| frame::is_start(byte)) {
+            if is_first && !begins_a_frame(bytes) {
                 sender.send(Incoming::Stranger).await.ok();
                 return;
             }

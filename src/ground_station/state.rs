@@ -140,7 +140,7 @@ fn attitude(vehicle: &Snapshot) -> Option<[f64; 3]> {
     Some([estimate.roll_deg?, estimate.pitch_deg?, estimate.heading_deg?].map(f64::to_radians))
 }
 
-/// Returns the position from home. Estimates count from the place of the boot, where home is.
+/// Returns the position relative to home. Estimates are relative to the position at boot, which is home.
 fn local_ned(vehicle: &Snapshot) -> Option<[f64; 3]> {
     let estimate = &vehicle.estimate;
     Some([estimate.n?, estimate.e?, -estimate.alt?])

@@ -8,19 +8,19 @@ use tokio::sync::{mpsc, oneshot, watch};
 use tokio_util::sync::CancellationToken;
 use tokio_util::task::TaskTracker;
 
-use super::answers::{Waiting, outcome, shortened, taken, without_effect};
+use super::answers::{Waiting, as_set, outcome, shortened, taken, without_effect};
 use super::controls::{self, Controls, Refused, Until};
+use super::missions::{self, Mission};
 use super::rc::rc_frame;
 use super::sockets::{DoorError, Incoming, Sockets};
 use super::state::{craft_state, home, is_on_ground};
 use super::texts::{Texts, ascii};
-use super::{GroundStationOptions, missions, parameters};
+use super::{GroundStationOptions, fences, parameters};
 use crate::fc::CraftSettings;
 use crate::mavlink::MissionItem;
 use crate::mavlink::craft::{Answer, CraftOptions, CraftProtocol, Lifetime, Request, RequestKind, Ticket};
 use crate::mavlink::value::{CommandResult, MissionResult};
 use crate::plan::FlightPlan;
-use crate::session::command::CliOutput;
 use crate::session::{Command, ReplyTo, SessionView};
 use crate::signals::RcSource;
 use crate::telemetry::snapshot::SettingsView;
@@ -31,6 +31,8 @@ use crate::vehicle::VehicleCommand;
 const STEP: Duration = Duration::from_millis(20);
 /// The time after which a switch that had no effect is refused.
 const PATIENCE: Duration = Duration::from_millis(3500);
+/// The time within which a plan that was uploaded is shown as the stored one. A firmware may store it with other values.
+const UNTIL_SHOWN: Duration = Duration::from_millis(500);
 /// The altitude of a take-off without one, m.
 const TAKEOFF_M: f64 = 10.0;
 /// The most items of a mission: a plan has fewer waypoints, but some items are no waypoints.
@@ -85,6 +87,7 @@ impl BoundDoor {
             identity: self.options.identity,
             version: version.map(|part| part.parse().unwrap_or(0)),
             max_mission: MAX_MISSION,
+            max_fence: fences::MAX_ITEMS,
             takes_rc: self.options.takes_rc,
             is_read_only: self.options.is_read_only,
             ..CraftOptions::default()
@@ -100,7 +103,8 @@ impl BoundDoor {
             texts: Texts::default(),
             home_amsl_m: None,
             stored: (None, false),
-            items: Vec::new(),
+            mission: Mission::default(),
+            fence: None,
             reached: None,
             flown_to: None,
             settings: None,
@@ -126,7 +130,8 @@ struct Task {
     home_amsl_m: Option<f64>,
     /// The plan of the present items, and whether home was known.
     stored: (Option<FlightPlan>, bool),
-    items: Vec<MissionItem>,
+    mission: Mission,
+    fence: Option<MissionItem>,
     /// The waypoint that was reported as reached.
     reached: Option<u8>,
     /// The waypoint that is flown to.
@@ -181,12 +186,13 @@ impl Task {
     fn step(&mut self) {
         let now = self.now();
         let view = self.view.borrow_and_update().clone();
+        // Before the rest, so that a ground station that has its answer reads what is new.
+        self.answer_waiting(&view, now);
         self.follow(&view);
         let unix = self.unix_at_boot.map(|boot| boot + Duration::from_micros(view.vehicle.time.0));
         let mut state = craft_state(&view, self.home_amsl_m, unix);
-        if let (Some(current), Some(plan)) = (state.mission.current, &self.stored.0) {
-            state.mission.current = missions::item_of_waypoint(&self.items, plan, current).or(Some(0));
-        }
+        state.mission.current =
+            state.mission.current.map(|waypoint| self.mission.item_of_waypoint(waypoint).unwrap_or(0));
         for (severity, text) in self.texts.follow(&view) {
             self.protocol.status_text(severity, &ascii(&text));
         }
@@ -194,7 +200,7 @@ impl Task {
         commands.into_iter().for_each(|command| _ = self.order(command));
         self.protocol.advance(now, Duration::from_micros(view.vehicle.time.0), &state);
         self.serve(now);
-        self.answer_waiting(&view, now);
+        self.sockets.forget(|peer| self.protocol.peers().any(|known| known.id == peer));
     }
 
     /// Follows home, plan and settings of the craft.
@@ -208,10 +214,15 @@ impl Task {
         let home = home(vehicle, self.home_amsl_m);
         if self.stored.0 != vehicle.stored_plan || self.stored.1 != home.is_some() {
             self.stored = (vehicle.stored_plan.clone(), home.is_some());
-            let items =
-                vehicle.stored_plan.as_ref().zip(home).map(|(plan, home)| missions::items(plan, &home));
-            self.items = items.unwrap_or_default();
-            self.protocol.set_mission(self.items.clone());
+            let plan = vehicle.stored_plan.as_ref().zip(home);
+            self.mission = plan.map(|(plan, home)| Mission::of_plan(plan, &home)).unwrap_or_default();
+            self.protocol.set_mission(self.mission.items.clone());
+        }
+        let setting = self.settings.as_ref().and_then(|settings| settings.find(fences::SETTING));
+        let fence = fences::item(setting.and_then(parameters::number), home.as_ref());
+        if self.fence != fence {
+            self.fence = fence;
+            self.protocol.set_fence(fence.into_iter().collect());
         }
         if let Some(nav) = vehicle.nav.as_ref().filter(|nav| nav.engaged) {
             // The next waypoint of the same plan begins where the last one was reached, perhaps between two views.
@@ -221,20 +232,18 @@ impl Task {
             self.flown_to = Some(nav.wp);
             if let Some(wp) = reached.filter(|_| self.reached != reached) {
                 self.reached = reached;
-                let plan = self.stored.0.as_ref();
-                if let Some(item) =
-                    plan.and_then(|plan| missions::item_of_waypoint(&self.items, plan, u16::from(wp)))
-                {
+                if let Some(item) = self.mission.item_of_waypoint(u16::from(wp)) {
                     self.protocol.item_reached(item);
                 }
             }
         } else {
             (self.reached, self.flown_to) = (None, None);
         }
-        if self.reading.is_none() && (self.settings.is_none() || self.shown_settings != vehicle.settings) {
+        let shown = vehicle.settings.map(SettingsView::chosen);
+        if self.reading.is_none() && (self.settings.is_none() || self.shown_settings != shown) {
             let (reply, settings) = ReplyTo::channel();
             if self.order(Command::ReadSettings { reply }) {
-                self.shown_settings = vehicle.settings;
+                self.shown_settings = shown;
                 self.reading = Some(settings);
             }
         }
@@ -269,13 +278,12 @@ impl Task {
         let at_once = |commands| (commands, Until::Now);
         let commands = match kind {
             RequestKind::Mission { items, .. } => return self.upload(ticket, &items, view),
-            RequestKind::SetParameter { name, value } => return self.set_parameter(ticket, name, value),
-            RequestKind::Fence(_) => {
-                let lines =
-                    ["Fences are set by the parameter AP_FENCE_DIST, a circle around home.".to_owned()];
-                self.protocol.answer(ticket, Answer::Mission(MissionResult::Unsupported), &lines);
-                return;
+            RequestKind::SetParameter { name, value } => {
+                let setting = self.settings.as_ref().and_then(|settings| parameters::find(settings, &name));
+                let name = setting.map_or(name, |setting| setting.name.clone());
+                return self.change(ticket, name, value);
             }
+            RequestKind::Fence(items) => return self.set_fence(ticket, &items, view),
             RequestKind::Arm => controls.arm(view, now),
             RequestKind::Disarm => controls.disarm(view, now),
             RequestKind::TakeOff { altitude } => controls
@@ -288,13 +296,9 @@ impl Task {
             RequestKind::Continue => controls.resume(view, now),
             RequestKind::SetMode(mode) => controls.set_mode(view, mode, now),
             RequestKind::SetCurrent(item) => {
-                let plan = self.stored.0.as_ref();
-                match plan.and_then(|plan| missions::waypoint_of_item(&self.items, plan, item)) {
-                    Some(waypoint) => controls.go_to(view, waypoint).map(at_once),
-                    None => {
-                        Err((CommandResult::Denied, format!("The mission has no item {item} to fly to.")))
-                    }
-                }
+                let waypoint = self.mission.waypoint_of_item(item);
+                let none = || (CommandResult::Denied, format!("The mission has no item {item} to fly to."));
+                waypoint.ok_or_else(none).and_then(|waypoint| controls.go_to(view, waypoint)).map(at_once)
             }
             RequestKind::SetHome(_) => {
                 Err((CommandResult::Unsupported, "Home is where the craft was armed.".to_owned()))
@@ -336,34 +340,37 @@ impl Task {
         let (plan, lines) = match missions::plan(items, home.as_ref()) {
             Ok(mission) => mission,
             Err((result, lines)) => {
-                self.protocol.answer(ticket, Answer::Mission(result), shortened(lines).as_slice());
-                return;
+                return self.answer_upload(ticket, result, lines);
             }
         };
         let (reply, uploaded) = ReplyTo::channel();
         let name = missions::NAME.to_owned();
-        let upload = Command::Upload { name, plan: Box::new(plan), settings: Vec::new(), reply };
+        let upload = Command::Upload { name, plan: Box::new(plan.clone()), settings: Vec::new(), reply };
         match controls::check(view, std::slice::from_ref(&upload)) {
-            Ok(()) if self.order(upload) => self.waiting.push(Waiting::Upload(ticket, uploaded, lines)),
-            Ok(()) => self.protocol.answer(ticket, Answer::Mission(MissionResult::Error), &[]),
-            Err((_, sentence)) => {
-                self.protocol.answer(ticket, Answer::Mission(MissionResult::Denied), &[sentence]);
+            Ok(()) if self.order(upload) => self.waiting.push(Waiting::Upload(ticket, uploaded, plan, lines)),
+            Ok(()) => self.answer_upload(ticket, MissionResult::Error, Vec::new()),
+            Err((_, sentence)) => self.answer_upload(ticket, MissionResult::Denied, vec![sentence]),
+        }
+    }
+
+    fn set_fence(&mut self, ticket: Ticket, items: &[MissionItem], view: &SessionView) {
+        match fences::radius_m(items, home(&view.vehicle, self.home_amsl_m).as_ref()) {
+            Ok(radius) => self.change(ticket, fences::SETTING.to_owned(), radius),
+            Err(why) => {
+                self.protocol.answer(ticket, Answer::Mission(MissionResult::Unsupported), &[ascii(&why)]);
             }
         }
     }
 
-    fn set_parameter(&mut self, ticket: Ticket, name: String, number: f32) {
-        let setting = self.settings.as_ref().and_then(|settings| parameters::find(settings, &name));
-        let Some(setting) = setting else {
-            self.protocol.answer(ticket, Answer::Parameter(0.0), &[]);
-            return;
-        };
-        let old = parameters::number(setting).unwrap_or(0.0);
-        match parameters::value(setting, number) {
-            Err(sentence) => self.protocol.answer(ticket, Answer::Parameter(old), &[sentence]),
+    /// Changes a setting, for a parameter or a fence.
+    fn change(&mut self, ticket: Ticket, name: String, number: f32) {
+        let setting = self.settings.as_ref().and_then(|settings| settings.find(&name));
+        let unknown = || format!("The craft has not reported the setting {name} yet: try again.");
+        match setting.ok_or_else(unknown).and_then(|setting| parameters::value(setting, number)) {
+            Err(sentence) => self.refuse(ticket, (CommandResult::Denied, sentence)),
             Ok(value) => {
                 let (reply, answer) = ReplyTo::channel();
-                self.order(Command::Cli { line: format!("set {} = {value}", setting.name), reply });
+                self.order(Command::Cli { line: format!("set {name} = {value}"), reply });
                 self.waiting.push(Waiting::Setting(ticket, name, number, answer));
             }
         }
@@ -386,58 +393,49 @@ impl Task {
                         );
                     }
                 },
-                Waiting::Upload(ticket, mut uploaded, mut lines) => match taken(&mut uploaded) {
-                    None => still.push(Waiting::Upload(ticket, uploaded, lines)),
-                    Some(Ok(Ok(_))) => {
-                        self.protocol.answer(
-                            ticket,
-                            Answer::Mission(MissionResult::Accepted),
-                            shortened(lines).as_slice(),
-                        );
-                    }
+                Waiting::Upload(ticket, mut uploaded, plan, mut lines) => match taken(&mut uploaded) {
+                    None => still.push(Waiting::Upload(ticket, uploaded, plan, lines)),
+                    Some(Ok(Ok(_))) => still.push(Waiting::Shown(ticket, plan, lines, now + UNTIL_SHOWN)),
                     Some(Ok(Err(sentence))) => {
                         lines.insert(0, sentence);
-                        self.protocol.answer(
-                            ticket,
-                            Answer::Mission(MissionResult::Error),
-                            shortened(lines).as_slice(),
-                        );
+                        self.answer_upload(ticket, MissionResult::Error, lines);
                     }
-                    Some(Err(())) => self.protocol.answer(ticket, Answer::Mission(MissionResult::Error), &[]),
+                    Some(Err(())) => self.answer_upload(ticket, MissionResult::Error, Vec::new()),
                 },
+                Waiting::Shown(ticket, plan, lines, deadline) => {
+                    let is_shown = view.vehicle.stored_plan.as_ref() == Some(&plan);
+                    if is_shown || now >= deadline {
+                        self.answer_upload(ticket, MissionResult::Accepted, lines);
+                    } else {
+                        still.push(Waiting::Shown(ticket, plan, lines, deadline));
+                    }
+                }
                 Waiting::Setting(ticket, name, number, mut answer) => match taken(&mut answer) {
                     None => still.push(Waiting::Setting(ticket, name, number, answer)),
-                    Some(answer) => self.answer_setting(ticket, &name, number, answer.ok()),
+                    Some(answer) => self.answer_setting(ticket, &name, number, as_set(answer)),
                 },
             }
         }
         self.waiting = still;
     }
 
-    fn answer_setting(&mut self, ticket: Ticket, name: &str, number: f32, answer: Option<CliOutput>) {
-        let text = answer.map(|answer| answer.text).unwrap_or_default();
-        let settings = self.settings.as_deref_mut();
-        let Some(setting) =
-            settings.and_then(|all| all.all.iter_mut().find(|at| parameters::alias(&at.name) == name))
-        else {
-            return;
-        };
-        if text.contains("set to") {
-            setting.value = parameters::value(setting, number).unwrap_or_default();
-            self.protocol.answer(ticket, Answer::Parameter(number), &[]);
-            // The settings are read again, because one may change others.
-            self.shown_settings = None;
-        } else {
-            let old = parameters::number(setting).unwrap_or(0.0);
-            let said = text
-                .lines()
-                .map(str::trim)
-                .find(|line| !line.is_empty())
-                .unwrap_or("The craft did not answer.");
-            self.protocol.answer(ticket, Answer::Parameter(old), &[said.to_owned()]);
+    fn answer_upload(&mut self, ticket: Ticket, result: MissionResult, lines: Vec<String>) {
+        self.protocol.answer(ticket, Answer::Mission(result), &shortened(lines));
+    }
+
+    fn answer_setting(&mut self, ticket: Ticket, name: &str, number: f32, outcome: Result<(), String>) {
+        if let Err(said) = outcome {
+            // The answer to a parameter that is refused is its old value.
+            return self.refuse(ticket, (CommandResult::Denied, said));
         }
-        if let Some(settings) = &self.settings {
+        if let Some(settings) = self.settings.as_deref_mut() {
+            if let Some(setting) = settings.find_mut(name) {
+                setting.value = parameters::value(setting, number).unwrap_or_default();
+            }
             self.protocol.set_parameters(&parameters::table(settings));
         }
+        self.protocol.answer(ticket, Answer::Parameter(number), &[]);
+        // The settings are read again, because one may change others. A reading from before has the old value.
+        (self.shown_settings, self.reading) = (None, None);
     }
 }

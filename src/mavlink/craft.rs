@@ -246,7 +246,7 @@ impl CraftProtocol {
     }
 
     /// Takes the outcome of a request, with lines that its sender gets as texts: reasons of a refusal, or the differences
-    /// between what was sent and what will be flown. A ticket that is no longer known is ignored.
+    /// between the plan of the sender and the plan of the craft. A ticket that is no longer known is ignored.
     pub fn answer(&mut self, ticket: Ticket, answer: Answer, lines: &[String]) {
         let Some(pending) = self.pending.take(ticket) else { return };
         let (from, is_accepted) = (pending.from, answer.command() == CommandResult::Accepted);

@@ -52,7 +52,7 @@ impl MissionItem {
     ///
     /// # Errors
     ///
-    /// A position that is no number, or outside of the globe.
+    /// Fails for a position that is not finite or not on the globe.
     pub(super) fn from_float(item: &message::MissionItemFloat) -> Result<Self, MissionResult> {
         let whole = |value: f32, limit: f64, error| {
             let value = f64::from(value);

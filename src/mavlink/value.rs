@@ -110,7 +110,7 @@ codes! {
         /// For development.
         Debug = 7,
     }
-    /// Whether the craft is on the ground, `MAV_LANDED_STATE`.
+    /// The state of the craft in relation to the ground, `MAV_LANDED_STATE`.
     LandedState {
         /// Not known.
         Undefined = 0,

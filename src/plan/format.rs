@@ -63,6 +63,7 @@ pub use note::{Note, NoteKind};
 pub use options::{ReadOptions, WriteOptions};
 pub use problem::{PlanError, Problems, report};
 pub use qgc_plan::qgc_fences;
+pub use qgc_wpl::item_sources;
 pub use setting::{SettingCheck, SettingFault, SettingPart, setting_line};
 pub use table::table;
 pub use toml_table::{TomlTable, Value};

@@ -323,6 +323,11 @@ pub struct SettingsView {
 }
 
 impl SettingsView {
+    /// Returns the settings without the values that the craft learns in flight.
+    pub fn chosen(self) -> Self {
+        Self { hover_stick_us: 0, raised_stick_us: 0, sink_stick_us: None, ..self }
+    }
+
     /// Returns the assumptions for estimates and reviews of plans on this craft.
     pub fn assumptions(&self) -> Assumptions {
         Assumptions {

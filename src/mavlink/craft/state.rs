@@ -19,7 +19,7 @@ pub struct CraftState {
     pub is_ready_to_arm: Option<bool>,
     /// `true` during a failsafe.
     pub is_failsafe: bool,
-    /// Whether the craft is on the ground.
+    /// On the ground, in the air, or between; `None` if unknown.
     pub landed: Option<LandedState>,
     /// Sensors that exist: bits of [`sensor`](super::super::value::sensor).
     pub sensors_present: u32,

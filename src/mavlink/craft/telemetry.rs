@@ -172,7 +172,7 @@ impl Source<'_> {
         let state = self.state;
         let present = state.sensors_present | sensor::READY_TO_ARM;
         let is_ready = state.is_ready_to_arm == Some(true);
-        // MAVProxy reports a breach of the fence while its health bit is clear, also if there is no fence.
+        // MAVProxy reports a breach while the health bit of the fence is clear, even without a fence.
         let mut health = state.sensors_present & state.sensors_healthy | sensor::FENCE;
         health |= if is_ready { sensor::READY_TO_ARM } else { 0 };
         let battery = state.battery;

@@ -135,7 +135,7 @@ pub struct CraftReport {
     pub navigation: Option<Heard<NavigationState>>,
     /// The mission.
     pub mission: Option<Heard<CurrentItem>>,
-    /// Whether the craft is on the ground.
+    /// On the ground, in the air, or between.
     pub landed: Option<Heard<LandedState>>,
     /// The sensors.
     pub sensors: Option<Heard<SensorStatus>>,

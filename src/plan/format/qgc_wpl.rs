@@ -8,6 +8,7 @@ use super::loss::{Finding, LossReport, Place, Severity};
 use super::mission_item::{self, Mission, MissionItem, Sent, send, written_position};
 use super::{HomePosition, PlanFile, Problems, ReadOptions, Written, home};
 use crate::geo::{Degrees7, LatLon};
+use crate::plan::Waypoint;
 use crate::plan::estimate::Assumptions;
 
 /// The first line of a file.
@@ -234,6 +235,11 @@ pub(super) fn write(file: &PlanFile) -> Written {
         losses.add(Finding::new(Severity::Lost, "settings", why).values(format!("{count} {settings}"), ""));
     }
     Written { contents: text.into_bytes(), losses }
+}
+
+/// Returns the index of the waypoint of each item that a waypoint file has after its home.
+pub fn item_sources(waypoints: &[Waypoint], home: LatLon) -> Vec<usize> {
+    send(waypoints, written_position(home).0, &Assumptions::default(), false).sources
 }
 
 fn refused(findings: Vec<Finding>) -> Written {

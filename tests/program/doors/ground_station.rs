@@ -1,15 +1,15 @@
 //! A MAVLink ground station at the door, which speaks by the protocol of the crate `betadeck-mavlink`.
 
 use std::io::{ErrorKind, Read as _, Write as _};
-use std::net::{SocketAddr, TcpStream};
+use std::net::{SocketAddr, TcpStream, UdpSocket};
 use std::time::{Duration, Instant};
 
-use betadeck::mavlink::MissionItem;
-use betadeck::mavlink::frame::{Frame, Version};
-use betadeck::mavlink::message::CommandLong;
+use betadeck::mavlink::frame::{Frame, FrameReader, Version};
+use betadeck::mavlink::message::{CommandLong, Message, ParamSet};
 use betadeck::mavlink::state::GeoPosition;
 use betadeck::mavlink::station::{Event, Order, StationOptions, StationProtocol, TransferEnd};
 use betadeck::mavlink::value::MissionKind;
+use betadeck::mavlink::{MissionItem, Text};
 
 use super::program::{PATIENCE, Program};
 
@@ -18,13 +18,18 @@ const TAKE_OFF: u16 = 22;
 
 /// Starts a session at twenty times real time with a door for ground stations. Returns the address of the door.
 fn serve(more: &[&str]) -> (Program, SocketAddr) {
-    let options = "serve --fresh --ws-port 0 --tcp-port 0 --udp-ports 0,0,0,0 --mavlink tcp:0 --speed 20";
-    let arguments = options.split(' ').chain(more.iter().copied()).collect::<Vec<_>>();
-    let mut program = Program::start(&arguments);
+    let mut program = start(&[&["--mavlink", "tcp:0"], more].concat());
     let address = program.wait("address of the door", |line| {
         line.split("MAVLink: listens on ").nth(1)?.split(',').next()?.parse().ok()
     });
     (program, address)
+}
+
+/// Starts a session at twenty times real time.
+fn start(more: &[&str]) -> Program {
+    let options = "serve --fresh --ws-port 0 --tcp-port 0 --udp-ports 0,0,0,0 --speed 20";
+    let arguments = options.split(' ').chain(more.iter().copied()).collect::<Vec<_>>();
+    Program::start(&arguments)
 }
 
 /// A ground station that is connected to the door.
@@ -115,14 +120,16 @@ impl Station {
             target_component: 1,
             ..CommandLong::default()
         };
-        let frame = Frame {
-            version: Version::V2,
-            sequence: self.sequence,
-            system: 255,
-            component: 190,
-            message: message.into(),
-        };
-        self.stream.write_all(&frame.encode().unwrap()).unwrap();
+        self.stream.write_all(&packet(self.sequence, message)).unwrap();
+    }
+
+    /// Waits for the position of a craft with a fix.
+    fn position(&mut self) -> GeoPosition {
+        self.until("position with a fix", |protocol, _| {
+            let report = protocol.report();
+            report.gps.as_ref().filter(|heard| heard.value.satellites.is_some_and(|count| count > 5))?;
+            report.position.as_ref().map(|heard| heard.value)
+        })
     }
 
     fn transfer(&mut self) -> TransferEnd {
@@ -131,6 +138,13 @@ impl Station {
             _ => None,
         })
     }
+}
+
+/// Returns the bytes of a message from a ground station.
+fn packet(sequence: u8, message: impl Into<Message>) -> Vec<u8> {
+    let frame =
+        Frame { version: Version::V2, sequence, system: 255, component: 190, message: message.into() };
+    frame.encode().unwrap()
 }
 
 fn item(command: u16, north_e7: i32, east_e7: i32, alt_m: f32, home: &GeoPosition) -> MissionItem {
@@ -150,11 +164,7 @@ fn item(command: u16, north_e7: i32, east_e7: i32, alt_m: f32, home: &GeoPositio
 fn a_ground_station_uploads_a_mission_reads_it_back_and_flies_it_home() {
     let (_program, address) = serve(&["--mavlink-as", "px4"]);
     let mut station = Station::connect(address);
-    let here = station.until("position with a fix", |protocol, _| {
-        let report = protocol.report();
-        report.gps.as_ref().filter(|heard| heard.value.satellites.is_some_and(|count| count > 5))?;
-        report.position.as_ref().map(|heard| heard.value)
-    });
+    let here = station.position();
     let items = vec![
         item(16, 4000, 0, 12.0, &here),
         item(16, 4000, 5000, 12.0, &here),
@@ -203,4 +213,86 @@ fn a_web_page_cannot_reach_the_door_of_ground_stations_and_noise_changes_nothing
     station.is_armed(false);
     // The end of the noise may look like the begin of a frame, which swallows what follows.
     station.arm();
+}
+
+#[test]
+fn a_ground_station_draws_the_fence_as_a_circle_around_home_and_takes_it_away() {
+    let (_program, address) = serve(&[]);
+    let mut station = Station::connect(address);
+    let here = station.position();
+    let circle = MissionItem { params: [180.0, 0.0, 0.0, 0.0], ..item(5003, 0, 0, 0.0, &here) };
+    station.protocol.upload(MissionKind::Fence, vec![circle]).unwrap();
+    assert_eq!(station.transfer(), TransferEnd::Sent(MissionKind::Fence), "{}", station.texts);
+    let radius = |station: &mut Station| {
+        station.protocol.download(MissionKind::Fence).unwrap();
+        let TransferEnd::Received { items, .. } = station.transfer() else { panic!("no items") };
+        items.first().map(|item| item.params[0])
+    };
+    assert_eq!(radius(&mut station), Some(180.0));
+
+    station.protocol.upload(MissionKind::Fence, vec![item(5001, 0, 0, 0.0, &here); 3]).unwrap();
+    assert!(matches!(station.transfer(), TransferEnd::Refused(..)));
+    station.says("a polygon");
+    assert_eq!(radius(&mut station), Some(180.0), "the fence is unchanged");
+
+    station.protocol.upload(MissionKind::Fence, Vec::new()).unwrap();
+    assert_eq!(station.transfer(), TransferEnd::Sent(MissionKind::Fence), "{}", station.texts);
+    assert_eq!(radius(&mut station), None);
+}
+
+#[test]
+fn a_web_page_cannot_reach_the_door_by_a_datagram_with_a_frame_inside() {
+    let listener = UdpSocket::bind("127.0.0.1:0").unwrap();
+    listener.set_read_timeout(Some(PATIENCE)).unwrap();
+    let place = format!("udp:{}", listener.local_addr().unwrap().port());
+    let _program = start(&["--mavlink", &place]);
+    let (mut buffer, mut reader) = ([0; 2048], FrameReader::default());
+    let (length, door) = listener.recv_from(&mut buffer).unwrap();
+    assert!(reader.next_frame(&mut &buffer[..length]).is_some(), "the door sends frames of its own accord");
+
+    let set = |param_id: &str, param_value| ParamSet {
+        param_value,
+        target_system: 1,
+        target_component: 1,
+        param_id: Text::new(param_id),
+        param_type: 9,
+    };
+    // A request of WebRTC begins with 0x0001 and has a user name that the page chooses.
+    let mut request = b"\x00\x01\x00\x50\x21\x12\xa4\x42wwwwwwwwwwww\x00\x06\x00\x40".to_vec();
+    request.extend(packet(0, set("AP_MAX_ANGLE", 17.0)));
+    let page = UdpSocket::bind("127.0.0.1:0").unwrap();
+    page.send_to(&request, door).unwrap();
+
+    // The answer to a later change shows that the request was read, and had its time to have an effect. A change may come
+    // before the settings of the craft are known, so it is repeated until it is answered.
+    listener.set_read_timeout(Some(Duration::from_millis(100))).unwrap();
+    let mut reported = Vec::new();
+    let mut change = |name: &str, number: f32| {
+        let began = Instant::now();
+        let mut sent = None;
+        while !reported.contains(&(Text::new(name), number)) {
+            assert!(began.elapsed() < PATIENCE, "no change of {name}");
+            if sent.is_none_or(|sent: Instant| sent.elapsed() > Duration::from_millis(200)) {
+                listener.send_to(&packet(0, set(name, number)), door).unwrap();
+                sent = Some(Instant::now());
+            }
+            let Ok((length, _)) = listener.recv_from(&mut buffer) else { continue };
+            let mut bytes = &buffer[..length];
+            while let Some(frame) = reader.next_frame(&mut bytes) {
+                if let Message::ParamValue(value) = frame.message {
+                    reported.push((value.param_id, value.param_value));
+                }
+            }
+        }
+    };
+    change("AP_MAX_ANGLE", 33.0);
+    page.send_to(&request, door).unwrap();
+    change("AP_WP_RADIUS", 400.0);
+    change("AP_WP_RADIUS", 450.0);
+    assert!(!reported.contains(&(Text::new("AP_MAX_ANGLE"), 17.0)), "{reported:?}");
+    // No earlier value is reported in between.
+    let radii = reported.iter().filter(|(name, _)| *name == Text::new("AP_WP_RADIUS"));
+    let mut radii = radii.map(|(_, number)| *number).collect::<Vec<_>>();
+    radii.dedup();
+    assert_eq!(radii, [400.0, 450.0]);
 }

@@ -59,7 +59,7 @@ fn what_is_wrong_is_denied_and_what_is_unknown_unsupported() {
         (command::DO_SET_MODE, params([0.0, 4.0])),
         (command::DO_SET_MODE, params([1.0, 99.0])),
         (command::DO_SET_MODE, [f32::NAN; 7]),
-        // The failsafe is no mode to select.
+        // No command selects a failsafe.
         (command::DO_SET_MODE, params([1.0, 7.0])),
         (command::DO_SET_STANDARD_MODE, params([2.0])),
         (command::DO_SET_MISSION_CURRENT, params([0.0])),

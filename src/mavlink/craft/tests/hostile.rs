@@ -130,7 +130,7 @@ fn states_without_numbers_do_not_stop_telemetry() {
     }
 }
 
-/// What can happen to a craft.
+/// An input of a craft.
 #[derive(Debug, Clone)]
 enum Step {
     Bytes(Vec<u8>),

@@ -19,7 +19,7 @@ fn a_peer_gets_telemetry_before_it_has_sent_anything() {
     let messages = rig.pass(FIRST, Duration::from_secs(60));
     assert_eq!(heartbeats(&messages).len(), 60);
     assert_eq!(count(&messages, |message| matches!(message, Message::HomePosition(_)).then_some(())), 60);
-    // What is not known is not sent.
+    // Values that are unknown are not sent.
     assert_eq!(count(&messages, |message| matches!(message, Message::Attitude(_)).then_some(())), 0);
 }
 
