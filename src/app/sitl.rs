@@ -165,7 +165,9 @@ fn apply(args: &SitlArgs, file: &Path, text: &str) -> Result<u8, AppError> {
     let loaded = store.load();
     loaded.findings.into_iter().for_each(|finding| say(OutputLine::Err(finding)));
     let mut configuration = loaded.configuration;
-    args.profile.into_iter().for_each(|profile| configuration.settings.set_profile(profile));
+    if let Some(profile) = args.profile {
+        configuration.settings.set_profile(profile);
+    }
     say(OutputLine::Out(format!("[CONFIG] Processing config file: {}", file.display())));
     let facts = CliFacts { storage: store.facts(), ..CliFacts::default() };
     let mut context = CliContext { configuration: &mut configuration, facts: &facts };

@@ -47,7 +47,7 @@ pub struct DoorArgs {
     )]
     pub mavlink: Vec<MavlinkPlace>,
 
-    /// What the craft claims to be there: generic, ardupilot, px4 [default: generic]
+    /// Autopilot that the craft claims to be there: generic, ardupilot, px4 [default: generic]
     #[arg(
         long,
         value_name = "NAME",
@@ -113,7 +113,7 @@ impl FromStr for MavlinkPlace {
     type Err = String;
 
     fn from_str(text: &str) -> Result<Self, String> {
-        let wrong = || format!("{text} is no place: write udp:PORT or tcp:PORT, such as udp:14550");
+        let wrong = || format!("{text} is not a place: write udp:PORT or tcp:PORT, such as udp:14550");
         let (transport, port) = text.trim().split_once(':').ok_or_else(wrong)?;
         let port = port.parse().map_err(|_| wrong())?;
         match transport {

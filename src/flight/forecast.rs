@@ -223,7 +223,7 @@ impl ForecastRun {
 
 /// The reason why there are no estimates of a plan with a remote flight controller.
 pub const SETTINGS_UNKNOWN: &str =
-    "The settings of the remote autopilot or the place of its craft are not known: there is no estimate yet.";
+    "There is no estimate yet: the remote craft has not reported its autopilot settings and its position.";
 
 /// The reason why there are no forecasts with a remote flight controller.
 pub const CONTROLLER_IS_REMOTE: &str =

@@ -38,7 +38,7 @@ use crate::runner::{Runner, Subscriber};
 use crate::signals::SimTime;
 use crate::sim::Stream;
 use crate::storage::Store;
-use crate::telemetry::LinkState;
+use crate::telemetry::{FirmwareProfile, LinkState};
 use crate::timeline::Timeline;
 use crate::vehicle::Vehicle;
 use interface::{Interface, Outcome, UploadTo};
@@ -156,8 +156,8 @@ struct Session {
     /// The multiple of real time at the start. The speed returns to it after a flight.
     usual_speed: f64,
     takeoff_m: f64,
-    /// `true` once it was reported that estimates fly the embedded firmware instead of the remote one.
-    has_said_twin: bool,
+    /// The profile in which estimates fly the embedded firmware instead of the remote one, once it was reported.
+    reported_twin: Option<FirmwareProfile>,
     simulator: Option<Simulator>,
     endpoints: Option<Endpoints>,
     commands: CommandQueue,
@@ -228,7 +228,7 @@ impl Session {
             vehicle: config.vehicle,
             persistence,
             takeoff_m: config.takeoff_m,
-            has_said_twin: false,
+            reported_twin: None,
             simulator: simulator.map(|link| Simulator::new(link, incoming, Instant::now())),
             endpoints: config.endpoints,
             commands: CommandQueue::new(commands),

@@ -111,8 +111,8 @@ impl Session {
         }
         let twin = self.vehicle.twin().map_err(|error| error.to_string())?;
         let twin = Box::new(twin.ok_or(SETTINGS_UNKNOWN)?);
-        if !std::mem::replace(&mut self.has_said_twin, true) {
-            let profile = twin.controller().settings_view().unwrap_or_default().profile;
+        let profile = twin.controller().settings_view().unwrap_or_default().profile;
+        if self.reported_twin.replace(profile) != Some(profile) {
             self.notice(format!(
                 "Estimates and checks of the plan fly the embedded firmware in the profile {profile}, with the settings of \
                  the craft's autopilot and with starter modes."

@@ -16,7 +16,7 @@ impl EstimateBasis {
         Self {
             plan: state.plan().clone(),
             settings: to_upload(state),
-            craft: state.view.vehicle.settings.map(chosen),
+            craft: state.view.vehicle.settings.map(SettingsView::chosen),
             air: Air {
                 airframe: world.airframe.clone(),
                 wind: world.wind,
@@ -31,7 +31,7 @@ impl EstimateBasis {
     pub(in crate::ui) fn still_holds(&self, state: &Shared) -> bool {
         self.plan == *state.plan()
             && self.settings == to_upload(state)
-            && self.craft == state.view.vehicle.settings.map(chosen)
+            && self.craft == state.view.vehicle.settings.map(SettingsView::chosen)
             && self.has_air_of(state)
     }
 
@@ -56,11 +56,6 @@ impl EstimateBasis {
 pub(in crate::ui) fn to_upload(state: &Shared) -> Vec<String> {
     let lines = settings_in_force::to_upload(state, state.editor.document());
     lines.into_iter().map(str::to_owned).collect()
-}
-
-/// Returns the settings without the values that the craft learns in flight.
-fn chosen(settings: SettingsView) -> SettingsView {
-    SettingsView { hover_stick_us: 0, raised_stick_us: 0, sink_stick_us: None, ..settings }
 }
 
 fn is_like(old: Option<WindView>, new: Option<WindView>) -> bool {
