@@ -8,7 +8,7 @@ use crate::mavlink::value::CommandResult;
 use crate::session::policy::{self, Facts, Intent};
 use crate::session::{Command, SessionView};
 use crate::signals::{RcFrame, RcSource};
-use crate::telemetry::switch::Switch;
+use crate::telemetry::switch::{self, Switch};
 use crate::telemetry::{ArmingFlag, ArmingFlags, FirmwareProfile, InFlightCommand, Mode};
 use crate::vehicle::VehicleCommand;
 
@@ -247,6 +247,16 @@ impl Controls {
                 // A mode without a switch is off.
                 false => _ = set(view, &mut frame, mode, false).ok(),
             }
+        }
+        // Modes may share a range of a channel.
+        let ranges = view.vehicle.craft.mode_ranges();
+        let is_wrong = |mode: &Mode| switch::is_on(*mode, ranges, &frame.channels) != wanted.contains(mode);
+        if let Some(wrong) = HOLDS.into_iter().chain([Mode::Horizon]).find(is_wrong) {
+            let why = match wanted.contains(&wrong) {
+                true => format!("No position of the switches selects {wrong} alone."),
+                false => format!("No position of the switches selects {mode:?} without {wrong}."),
+            };
+            return Err((CommandResult::Failed, why));
         }
         Ok((self.send(view, frame, now), Until::Now))
     }
