@@ -25,6 +25,7 @@ mod scenario_file;
 mod screen;
 mod serve;
 mod sitl;
+mod telemetry_recording;
 mod tui;
 mod usage;
 

@@ -12,4 +12,5 @@ pub(crate) mod named_file;
 pub(crate) mod output_file;
 pub(crate) mod recording_file;
 pub(crate) mod set_aside;
+pub(crate) mod telemetry_log;
 pub(crate) mod terrain;

@@ -2,12 +2,11 @@
 //!
 //! `task` joins three parts: the sockets of `sockets`, the protocol of the crate `betadeck-mavlink`, and the session, whose view it
 //! reads and to which it sends commands. `state` makes telemetry of the view, `controls` makes commands of the requests,
-//! `missions` and `fences` convert both ways, `parameters` names the settings.
+//! `fences` converts both ways, `parameters` names the settings.
 
 mod answers;
 mod controls;
 mod fences;
-mod missions;
 mod options;
 mod parameters;
 mod rc;

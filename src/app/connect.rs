@@ -1,6 +1,6 @@
 //! `betadeck --connect`: the ground station for a remote flight controller, without a simulation.
 
-use super::doors::LiveArgs;
+use super::doors::{Connection, LiveArgs};
 use super::last_plan;
 use super::screen::{self, LiveFlight, Screen, Source};
 use crate::args::{ConnectArgs, PlanArg, TuiArgs};
@@ -17,6 +17,12 @@ use crate::vehicle::Vehicle;
 
 /// Opens the user interface for the flight controller at `place`, and returns the exit code after the user leaves it.
 pub(super) fn run(args: &TuiArgs, place: &FcPlace, keymap: Keymap) -> Result<u8, AppError> {
+    let tlog = args.connect.tlog.as_deref();
+    if tlog.is_some() && !place.speaks_mavlink() {
+        return Err(AppError::input(format!(
+            "--tlog records MAVLink, and {place} speaks MSP: connect to a MAVLink craft, such as mavlink:udp:14550"
+        )));
+    }
     let directory = setup::store_directory(&args.flight)?;
     let mut notices = Vec::new();
     let start = ScreenStart { plain: args.plain, fresh: args.fresh_screen };
@@ -58,7 +64,7 @@ pub(super) fn run(args: &TuiArgs, place: &FcPlace, keymap: Keymap) -> Result<u8,
             flown: None,
             live: LiveArgs {
                 doors: &args.doors,
-                connect: Some(place),
+                connect: Some(Connection { place, tlog }),
                 firmware: None,
                 physics: &args.physics,
                 flight: &args.flight,

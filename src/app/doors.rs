@@ -2,6 +2,7 @@
 #![allow(clippy::disallowed_methods, reason = "the state of the doors is published at a rhythm of wall time")]
 
 use std::net::{IpAddr, Ipv4Addr, SocketAddr, TcpListener, UdpSocket};
+use std::path::Path;
 use std::time::{Duration, Instant};
 
 use tokio::sync::watch;
@@ -24,13 +25,21 @@ use crate::session::{Endpoints, Links, MotorTargets};
 pub(super) struct LiveArgs<'a> {
     pub(super) doors: &'a DoorArgs,
     /// The remote flight controller to connect to; `None` for a simulated craft.
-    pub(super) connect: Option<&'a FcPlace>,
+    pub(super) connect: Option<Connection<'a>>,
     /// The remote firmware, if the embedded one does not fly.
     pub(super) firmware: Option<&'a RemoteFirmware>,
     pub(super) physics: &'a PhysicsArgs,
     pub(super) flight: &'a FlightArgs,
     /// `true` if a screen shows the session and its earlier instants.
     pub(super) has_screen: bool,
+}
+
+/// A remote flight controller.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Connection<'a> {
+    pub(super) place: &'a FcPlace,
+    /// The file of the telemetry log.
+    pub(super) tlog: Option<&'a Path>,
 }
 
 /// The interval at which the state of the doors is published.
@@ -268,7 +277,11 @@ mod tests {
         };
         assert!(open(of(&embedded), None).await.unwrap().is_none());
         let place = "tcp:localhost:1".parse().unwrap();
-        let closed = LiveArgs { doors: &DoorArgs::default(), connect: Some(&place), ..of(&embedded) };
+        let closed = LiveArgs {
+            doors: &DoorArgs::default(),
+            connect: Some(Connection { place: &place, tlog: None }),
+            ..of(&embedded)
+        };
         assert!(
             open(closed, None).await.unwrap().is_none(),
             "a craft outside has the doors that are asked for"

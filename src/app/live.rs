@@ -3,14 +3,15 @@
 
 use std::time::Instant;
 
-use super::doors::{self, LiveArgs, OpenDoors};
+use super::doors::{self, Connection, LiveArgs, OpenDoors};
+use super::telemetry_recording;
 use crate::args::Speed;
 use crate::events::SessionEvent;
 use crate::fc::{RemoteEnds, RemoteLink};
 use crate::headless::setup;
 use crate::launch::link::OpenLink;
 use crate::launch::{RemoteFirmware, link};
-use crate::link::{FcPlace, FcStream};
+use crate::link::FcStream;
 use crate::process::error::AppError;
 use crate::session::{self, FlightFeed, FlownBefore, Handle, SessionConfig};
 use crate::storage::{FirmwareFolder, Store};
@@ -79,7 +80,10 @@ pub(super) async fn start(
         takeoff_m: TAKEOFF_M,
         is_recorded: args.has_screen,
         endpoints,
-        remote: remote.or_else(|| args.connect.map(connect)),
+        remote: match args.connect {
+            Some(connection) => Some(connect(connection)?),
+            None => remote,
+        },
         first_events,
     };
     let session = session::start_at(config, flown, feed)
@@ -89,8 +93,17 @@ pub(super) async fn start(
     Ok((session, doors, directory.flatten()))
 }
 
-/// Returns the link to the flight controller at `place` and starts to connect.
-fn connect(place: &FcPlace) -> RemoteLink {
+/// Returns the link to a flight controller and starts to connect.
+fn connect(Connection { place, tlog }: Connection<'_>) -> Result<RemoteLink, AppError> {
+    let log = tlog.map(telemetry_recording::create).transpose()?;
     let stream = FcStream::open(place.clone());
-    RemoteLink::new(RemoteEnds { name: place.to_string(), stream, peer: None, child: None }, Instant::now())
+    let now = Instant::now();
+    if place.speaks_mavlink() {
+        let stream = match log {
+            Some(file) => telemetry_recording::recorded(stream, file),
+            None => stream,
+        };
+        return Ok(RemoteLink::mavlink(stream, now));
+    }
+    Ok(RemoteLink::new(RemoteEnds { name: place.to_string(), stream, peer: None, child: None }, now))
 }

@@ -1,5 +1,7 @@
 //! A flight controller on the desk, for which this program is only the ground station.
 
+use std::path::PathBuf;
+
 use super::physics::without_effect;
 use super::{DoorArgs, FirmwareLinkArgs, FlightArgs, PhysicsArgs};
 use crate::link::FcPlace;
@@ -7,14 +9,21 @@ use crate::link::FcPlace;
 /// The flight controller to connect to.
 #[derive(Debug, Clone, Default, PartialEq, Eq, clap::Args)]
 pub struct ConnectArgs {
-    /// A remote flight controller: serial:DEVICE[,BAUD], tcp:HOST:PORT or ws:URL; nothing is simulated
+    /// A remote flight controller: serial:DEVICE[,BAUD], tcp:HOST:PORT, ws:URL or mavlink:PLACE; nothing is simulated
     ///
     /// serial:/dev/ttyACM0 is a board on a USB cable, tcp:192.168.4.1:5761 or ws://10.0.0.2:6761 one behind a bridge;
     /// wss:// is encrypted, in a program built with `--features tls`. Telemetry, command line and the plan are read from
     /// it. Changes need your permission once a connection. betadeck never arms it and turns no motor. A lost connection
-    /// is restored automatically. The doors stay closed, except those whose port is given (--tcp-port, --ws-port).
+    /// is restored automatically. mavlink:udp:14550, mavlink:tcp:HOST:PORT or mavlink:serial:/dev/ttyUSB0,57600 is a craft
+    /// that speaks MAVLink: ArduPilot, PX4, INAV. The doors stay closed, except those whose port is given (--tcp-port, --ws-port).
     #[arg(long, value_name = "PLACE", conflicts_with_all = ["firmware", "betaloop", "physics"], help_heading = "Flight controller")]
     pub connect: Option<FcPlace>,
+
+    /// Writes the frames of a MAVLink connection to FILE, which `replay` and other ground stations open
+    ///
+    /// The file must not exist. It has the frames of both directions with the time of day (.tlog).
+    #[arg(long, value_name = "FILE", requires = "connect", help_heading = "Flight controller")]
+    pub tlog: Option<PathBuf>,
 }
 
 impl ConnectArgs {

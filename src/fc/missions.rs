@@ -9,7 +9,7 @@ use crate::mavlink::MissionItem;
 use crate::mavlink::state::GeoPosition;
 use crate::mavlink::value::{MissionResult, position_frame};
 use crate::plan::FlightPlan;
-use crate::plan::format::loss::Severity;
+use crate::plan::format::loss::{LossReport, Severity};
 use crate::plan::format::{self, Format, HomePosition, PlanFile, ReadOptions};
 
 /// The first line of a waypoint file.
@@ -17,37 +17,43 @@ const HEADER: &str = "QGC WPL 110\n";
 /// The fields of an item.
 const FIELDS: usize = 12;
 /// The name of a plan from a ground station.
-pub(super) const NAME: &str = "ground station";
+pub const NAME: &str = "ground station";
 
 /// The mission of a plan.
 #[derive(Debug, Clone, Default)]
-pub(super) struct Mission {
+pub struct Mission {
     /// The items, without a home item.
-    pub(super) items: Vec<MissionItem>,
+    pub items: Vec<MissionItem>,
+    /// The differences between the plan and the items, as sentences.
+    pub losses: Vec<String>,
     /// The waypoint of each item.
     sources: Vec<usize>,
 }
 
 impl Mission {
     /// Returns the mission of a plan. Altitudes of the plan are above home.
-    pub(super) fn of_plan(plan: &FlightPlan, home: &GeoPosition) -> Self {
+    pub fn of_plan(plan: &FlightPlan, home: &GeoPosition) -> Self {
         let position = LatLon::from_degrees(home.lat_deg, home.lon_deg);
         let home = Some(HomePosition { position, amsl_m: Some(home.alt_amsl) });
         let file = PlanFile { plan: plan.clone(), home, ..PlanFile::default() };
         let written = format::write(&file, Format::QgcWpl);
         // The first two lines are the header and home.
         let items = written.text().lines().skip(2).filter_map(item).collect();
-        Self { items, sources: format::item_sources(&plan.waypoints, position) }
+        Self {
+            items,
+            losses: lines(&written.losses),
+            sources: format::item_sources(&plan.waypoints, position),
+        }
     }
 
     /// Returns the item at which the craft arrives at a waypoint; `None` if the waypoint has none.
-    pub(super) fn item_of_waypoint(&self, waypoint: u16) -> Option<u16> {
+    pub fn item_of_waypoint(&self, waypoint: u16) -> Option<u16> {
         let mut positions = self.positions(0);
         positions.find(|(_, source)| *source == usize::from(waypoint)).map(|(item, _)| item)
     }
 
     /// Returns the waypoint of an item, or the next one for an item without a position.
-    pub(super) fn waypoint_of_item(&self, item: u16) -> Option<u8> {
+    pub fn waypoint_of_item(&self, item: u16) -> Option<u8> {
         self.positions(item).next().and_then(|(_, source)| u8::try_from(source).ok())
     }
 
@@ -81,7 +87,7 @@ fn item(line: &str) -> Option<MissionItem> {
 ///
 /// # Errors
 /// Fails with the result and the reasons if the mission has no place in a plan.
-pub(super) fn plan(
+pub fn plan(
     items: &[MissionItem],
     home: Option<&GeoPosition>,
 ) -> Result<(FlightPlan, Vec<String>), (MissionResult, Vec<String>)> {
@@ -98,9 +104,9 @@ pub(super) fn plan(
     };
     match format::read(NAME, text.as_bytes(), Format::QgcWpl, &options) {
         Ok(file) if file.losses.worst() == Some(Severity::Refused) => {
-            Err((MissionResult::Unsupported, lines(&file)))
+            Err((MissionResult::Unsupported, lines(&file.losses)))
         }
-        Ok(file) => Ok((file.plan.clone(), lines(&file))),
+        Ok(file) => Ok((file.plan.clone(), lines(&file.losses))),
         Err(errors) => {
             let reason = |error: &format::PlanError| {
                 format!("Item {}: {}.", error.line.saturating_sub(3), error.message)
@@ -111,9 +117,9 @@ pub(super) fn plan(
 }
 
 /// Returns the differences that matter, as sentences. Items count from 0.
-fn lines(file: &PlanFile) -> Vec<String> {
+fn lines(losses: &LossReport) -> Vec<String> {
     let matters = |severity: Severity| severity >= Severity::Assumed;
-    let findings = file.losses.findings.iter().filter(|finding| matters(finding.severity));
+    let findings = losses.findings.iter().filter(|finding| matters(finding.severity));
     findings.map(|finding| finding.to_string().split_whitespace().collect::<Vec<_>>().join(" ")).collect()
 }
 

@@ -16,7 +16,7 @@ use crate::plan::{AltitudeReference, CraftPlan};
 use crate::telemetry::Mode;
 use crate::telemetry::snapshot::{CraftView, ModeRange};
 use crate::vehicle::{RemoteController, RemoteTelemetry};
-use events::EventObserver;
+pub(super) use events::EventObserver;
 use leg::LegObserver;
 use settings::Settings;
 

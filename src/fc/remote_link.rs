@@ -16,7 +16,9 @@ use std::time::{Duration, Instant};
 
 use super::feed::Feed;
 use super::kept_flight::{Copies, KeptFlight, place_of};
+use super::mavlink_craft::MavlinkCraft;
 use super::observer::Simulated;
+use super::protocol::Protocol;
 use super::remote::{Craft, Event, Input};
 use super::self_check::SelfCheck;
 use super::stepped::{StepEvent, Stepped};
@@ -59,7 +61,7 @@ pub struct RemoteEnds {
 /// The link to a remote flight controller.
 #[derive(Debug)]
 pub struct RemoteLink {
-    remote: Remote,
+    protocol: Protocol,
     ends: Ends,
     started: Instant,
     notices: Vec<RemoteNotice>,
@@ -91,14 +93,23 @@ impl RemoteLink {
             is_child: child.is_some(),
             is_in_steps: false,
         };
-        Self {
-            remote: Remote::new(craft, Duration::ZERO),
-            ends: Ends::Wall { stream, feed: peer.map(Feed::new), child },
-            started: now,
-            notices: Vec::new(),
-            earlier: Copies::default(),
-            stepped_at: SimTime::ZERO,
-        }
+        let ends = Ends::Wall { stream, feed: peer.map(Feed::new), child };
+        Self::over(Protocol::Msp(Box::new(Remote::new(craft, Duration::ZERO))), ends, now)
+    }
+
+    /// Creates a link to a craft that speaks MAVLink.
+    pub fn mavlink(stream: FcStream, now: Instant) -> Self {
+        let name = stream.place.clone();
+        Self::over(
+            Protocol::Mavlink(Box::new(MavlinkCraft::new(name))),
+            Ends::Wall { stream, feed: None, child: None },
+            now,
+        )
+    }
+
+    fn over(protocol: Protocol, ends: Ends, now: Instant) -> Self {
+        let (earlier, stepped_at) = (Copies::default(), SimTime::ZERO);
+        Self { protocol, ends, started: now, notices: Vec::new(), earlier, stepped_at }
     }
 
     /// Creates a link to an executable that has booted in simulated time.
@@ -115,7 +126,8 @@ impl RemoteLink {
         (earlier, stepped_at): (Copies, SimTime),
         now: Instant,
     ) -> Self {
-        Self { remote, ends: Ends::Steps(steps), started: now, notices: Vec::new(), earlier, stepped_at }
+        let link = Self::over(Protocol::Msp(Box::new(remote)), Ends::Steps(steps), now);
+        Self { earlier, stepped_at, ..link }
     }
 
     /// Returns `true` if its flight since its boot can be flown again.
@@ -131,14 +143,14 @@ impl RemoteLink {
         Some(KeptFlight { run, feed, steps, elapsed, end: self.stepped_at, earlier: self.earlier.clone() })
     }
 
-    /// Returns the flight controller.
-    pub fn remote(&self) -> &Remote {
-        &self.remote
+    /// Returns the protocol with the flight controller.
+    pub fn protocol(&self) -> &Protocol {
+        &self.protocol
     }
 
-    /// Returns the flight controller, for its configuration and for permissions.
-    pub fn remote_mut(&mut self) -> &mut Remote {
-        &mut self.remote
+    /// Does the same as [`Self::protocol`], for its configuration and for permissions.
+    pub fn protocol_mut(&mut self) -> &mut Protocol {
+        &mut self.protocol
     }
 
     /// Returns `true` if this program feeds it with the states of the craft, at the rate of the steps.
@@ -202,7 +214,7 @@ impl RemoteLink {
 
     /// Returns the time until an exchange is due even if nothing arrives; `None` if none is.
     pub fn pause(&self, now: Instant) -> Option<Duration> {
-        let due = self.remote.timeout()?;
+        let due = self.protocol.timeout()?;
         let least = if due.is_zero() { QUESTION_PAUSE } else { EXCHANGE_PAUSE };
         Some(due.saturating_sub(self.since(now)).max(least))
     }
@@ -224,8 +236,8 @@ impl RemoteLink {
         self.read_stream(context, since);
         self.take_events(vehicle);
         self.empty_mailbox(vehicle, now);
-        self.remote.handle_timeout(since);
-        while let Some(output) = self.remote.poll_transmit() {
+        self.protocol.handle_timeout(since);
+        while let Some(output) = self.protocol.poll_transmit() {
             if let Ends::Wall { stream, .. } = &self.ends {
                 // A full queue means that the stream carries nothing any more. The client gives the request up.
                 drop(stream.to.try_send(output));
@@ -244,11 +256,11 @@ impl RemoteLink {
             if let Some(mailbox) = vehicle.remote_mut() {
                 steps.take_frames(mailbox);
                 while let Some((ticket, request)) = mailbox.take_request() {
-                    self.remote.handle(Input::Requested(ticket, request), since);
+                    self.protocol.handle(Input::Requested(ticket, request), since);
                 }
             }
-            self.remote.handle_timeout(since);
-            while let Some(output) = self.remote.poll_transmit() {
+            self.protocol.handle_timeout(since);
+            while let Some(output) = self.protocol.poll_transmit() {
                 steps.send(&output);
             }
         }
@@ -259,19 +271,19 @@ impl RemoteLink {
         }
         let since = steps.elapsed();
         if steps.sends_motors {
-            self.remote.handle(Input::SentMotors, since);
+            self.protocol.handle(Input::SentMotors, since);
         }
         while let Some(event) = self.step_event() {
             match event {
-                StepEvent::Connected => self.remote.handle(Input::Connected, since),
-                StepEvent::Received(bytes) => self.remote.handle(Input::Received(&bytes), since),
+                StepEvent::Connected => self.protocol.handle(Input::Connected, since),
+                StepEvent::Received(bytes) => self.protocol.handle(Input::Received(&bytes), since),
                 StepEvent::Ended { how, is_reboot } => {
                     self.earlier.clear();
-                    self.remote.handle(Input::Ended { how: &how, is_reboot }, since);
-                    self.remote.handle(Input::Lost("it restarts"), since);
+                    self.protocol.handle(Input::Ended { how: &how, is_reboot }, since);
+                    self.protocol.handle(Input::Lost("it restarts"), since);
                 }
-                StepEvent::NotStarted(reason) => self.remote.handle(Input::NotStarted(&reason), since),
-                StepEvent::Unusable(why) => self.remote.handle(Input::Unusable(why), since),
+                StepEvent::NotStarted(reason) => self.protocol.handle(Input::NotStarted(&reason), since),
+                StepEvent::Unusable(why) => self.protocol.handle(Input::Unusable(why), since),
                 StepEvent::Notice(notice) => self.notices.push(notice),
             }
         }
@@ -286,8 +298,9 @@ impl RemoteLink {
         if let Ends::Steps(steps) = &self.ends
             && steps.keeps_past()
             && !steps.is_busy()
+            && let Some(remote) = self.protocol.msp()
         {
-            self.earlier.keep(steps.steps_of_run(), steps.elapsed(), &self.remote);
+            self.earlier.keep(steps.steps_of_run(), steps.elapsed(), remote);
         }
     }
 
@@ -324,10 +337,10 @@ impl RemoteLink {
                 ChildEvent::NotShown(count) => self.notices.push(RemoteNotice::Reported(format!(
                     "Lines of the firmware's output that were not shown: {count}."
                 ))),
-                ChildEvent::Failed(reason) => self.remote.handle(Input::NotStarted(&reason), since),
+                ChildEvent::Failed(reason) => self.protocol.handle(Input::NotStarted(&reason), since),
                 ChildEvent::Ended(end) => {
                     let ended = Input::Ended { how: &end.to_string(), is_reboot: end.is_reboot() };
-                    self.remote.handle(ended, since);
+                    self.protocol.handle(ended, since);
                 }
             }
             // Notices keep the order of the events, and a program that is given up has no further ones.
@@ -354,10 +367,11 @@ impl RemoteLink {
                 None => return,
                 Some(StreamEvent::Bytes(bytes)) => {
                     read += bytes.len();
-                    self.remote.handle(Input::Received(&bytes), since);
+                    self.protocol.handle(Input::Received(&bytes), since);
                 }
-                Some(StreamEvent::Connected) => self.remote.handle(Input::Connected, since),
-                Some(StreamEvent::Lost(reason)) => self.remote.handle(Input::Lost(&reason), since),
+                Some(StreamEvent::Connected) => self.protocol.handle(Input::Connected, since),
+                Some(StreamEvent::Notice(sentence)) => self.notices.push(RemoteNotice::Reported(sentence)),
+                Some(StreamEvent::Lost(reason)) => self.protocol.handle(Input::Lost(&reason), since),
             }
         }
         // The queue was not polled until it was empty, so no wake-up is registered.
@@ -375,19 +389,19 @@ impl RemoteLink {
             Some(feed) => {
                 self.notices.extend(feed.exchange(mailbox, now));
                 if feed.has_motors() {
-                    self.remote.handle(Input::SentMotors, since);
+                    self.protocol.handle(Input::SentMotors, since);
                 }
             }
             None => while mailbox.take_frame().is_some() {},
         }
         while let Some((ticket, request)) = mailbox.take_request() {
-            self.remote.handle(Input::Requested(ticket, request), since);
+            self.protocol.handle(Input::Requested(ticket, request), since);
         }
     }
 
     /// Applies the consequences for the vehicle, the program and the user.
     fn take_events(&mut self, vehicle: &mut Vehicle) {
-        while let Some(event) = self.remote.poll_event() {
+        while let Some(event) = self.protocol.poll_event() {
             match event {
                 Event::Notice(notice) => self.notices.push(notice),
                 Event::Answered(ticket, answer) => {
@@ -439,10 +453,9 @@ impl RemoteLink {
 
     /// Delivers the observations and handles their consequences.
     fn observe(&mut self, vehicle: &mut Vehicle, since: Duration) {
-        let observer = self.remote.observer();
         let is_fed = self.is_fed();
-        let is_ready = self.remote.state() == RemoteState::Ready;
-        let trusts_mag = observer.trusts_mag();
+        let is_ready = self.protocol.view().state == RemoteState::Ready;
+        let trusts_mag = self.protocol.msp().is_some_and(|remote| remote.observer().trusts_mag());
         self.notices.extend(match &mut self.ends {
             Ends::Wall { feed, .. } => {
                 feed.as_mut().and_then(|feed| feed.check_at_rest(vehicle, is_ready, trusts_mag, since))
@@ -452,18 +465,19 @@ impl RemoteLink {
                 steps.self_check.look(dialect, vehicle, is_ready && steps.sends_motors, trusts_mag, since)
             }
         });
-        if let Some(seen) = observer.first_fix()
+        if let Some(seen) = self.protocol.first_fix()
             && !vehicle.local_frame().is_some_and(|frame| is_fed || is_near(frame, &seen))
         {
             vehicle.set_origin(seen);
         }
         let frame = vehicle.local_frame().copied();
-        let simulated = is_fed.then(|| Simulated {
+        let channels = vehicle.transmitter().newest().channels;
+        let simulated = self.protocol.msp().filter(|_| is_fed).map(|remote| Simulated {
             home_m: frame.map(|frame| frame.alt_amsl_m),
-            commanded: rescue::is_on(observer, &vehicle.transmitter().newest().channels),
+            commanded: rescue::is_on(remote.observer(), &channels),
         });
         if let Some(mailbox) = vehicle.remote_mut() {
-            self.remote.deliver(mailbox, frame.as_ref(), simulated);
+            self.protocol.deliver(mailbox, frame.as_ref(), simulated, since);
         }
     }
 }
@@ -474,24 +488,4 @@ fn is_near(frame: &LocalFrame, other: &LocalFrame) -> bool {
 }
 
 #[cfg(test)]
-mod tests {
-    use tokio::sync::mpsc;
-
-    use super::*;
-
-    #[test]
-    #[allow(clippy::disallowed_methods, reason = "an instant to count from")]
-    fn a_peer_that_floods_is_read_a_part_at_a_time() {
-        let ((to, _sent), (pieces, from)) = (mpsc::channel(1), mpsc::channel(MAX_READ));
-        while pieces.try_send(StreamEvent::Bytes(vec![b'$'; 4096])).is_ok() {}
-        let stream = FcStream { to, from, place: "tcp:here:1".to_owned(), bytes_per_s: None };
-        let ends = RemoteEnds { name: "the board".to_owned(), stream, peer: None, child: None };
-        let mut vehicle = Vehicle::elsewhere().unwrap();
-        let now = Instant::now();
-        let mut link = RemoteLink::new(ends, now);
-        link.exchange(&mut vehicle, None, now);
-        assert_eq!(pieces.capacity(), 2, "pieces read");
-        link.exchange(&mut vehicle, None, now);
-        assert_eq!(pieces.capacity(), 4, "pieces read");
-    }
-}
+mod tests;

@@ -134,23 +134,26 @@ fn home_is_where_a_real_craft_is_disarmed_not_where_it_was_seen_first() {
 fn a_board_that_says_nothing_any_more_is_lost_and_another_one_when_it_speaks_again() {
     let mut bench = Bench::new(Board::at(FIELD));
     bench.run(5.0);
-    assert_eq!(bench.link.remote().state(), RemoteState::Ready);
-    bench.link.remote_mut().permit_changes(1);
+    assert_eq!(bench.link.protocol().view().state, RemoteState::Ready);
+    bench.link.protocol_mut().permit_changes(1);
     bench.board.silent = true;
     bench.run(6.0);
-    assert_eq!(bench.link.remote().state(), RemoteState::Lost);
+    assert_eq!(bench.link.protocol().view().state, RemoteState::Lost);
     assert!(bench.was_reported("serial:test no longer answers"), "{:?}", bench.reported);
     assert_eq!(bench.vehicle.snapshot().craft.armed, None, "the last report is old");
-    assert_eq!(bench.link.remote().access(), Access::Reading);
+    assert_eq!(bench.link.protocol().access(), Access::Reading);
     bench.run(20.0);
     assert_eq!(bench.reported.iter().filter(|reported| reported.contains("no longer answers")).count(), 1);
 
     bench.board = Board { from_home: true, ..Board::at(COAST) };
     bench.run(8.0);
-    assert_eq!((bench.link.remote().state(), bench.link.remote().connection()), (RemoteState::Ready, 2));
+    assert_eq!(
+        (bench.link.protocol().view().state, bench.link.protocol().connection()),
+        (RemoteState::Ready, 2)
+    );
     assert_eq!(bench.reference(), AltitudeReference::Home);
     assert_eq!(bench.vehicle.snapshot().craft.armed, Some(false));
-    assert_eq!(bench.link.remote().access(), Access::Reading, "it was permitted for the one before");
+    assert_eq!(bench.link.protocol().access(), Access::Reading, "it was permitted for the one before");
 }
 
 #[test]
@@ -158,7 +161,7 @@ fn what_could_not_be_reported_in_flight_is_asked_after_it() {
     let mut bench = Bench::new(Board { armed: true, ..Board::at(FIELD) });
     bench.run(10.0);
     assert_eq!(
-        (bench.link.remote().state(), bench.reference()),
+        (bench.link.protocol().view().state, bench.reference()),
         (RemoteState::Ready, AltitudeReference::Unreported)
     );
     assert!(
@@ -169,7 +172,7 @@ fn what_could_not_be_reported_in_flight_is_asked_after_it() {
     bench.board.armed = false;
     bench.run(5.0);
     assert_eq!(bench.reference(), AltitudeReference::SeaLevel { home_m: Some(400.0) });
-    assert!(!bench.link.remote().opens_cli());
+    assert!(!bench.link.protocol().view().opens_cli);
     assert!(
         bench.reported.last().unwrap().contains("its waypoints' altitudes count from sea level"),
         "{:?}",
@@ -190,7 +193,7 @@ fn what_a_line_sets_is_known_soon_after() {
     bench.vehicle.apply(&VehicleCommand::single_line(line));
     bench.run(3.0);
     assert!((radius_m(&bench) - 7.0).abs() < 1e-9);
-    assert_eq!(bench.link.remote().state(), RemoteState::Ready);
+    assert_eq!(bench.link.protocol().view().state, RemoteState::Ready);
     let asked = bench.board.lines.iter().filter(|line| *line == "get ap_").count();
     bench.run(5.0);
     assert_eq!(bench.board.lines.iter().filter(|line| *line == "get ap_").count(), asked, "once");
@@ -214,7 +217,7 @@ fn a_craft_that_its_pilot_disarms_is_disarmed_by_the_switch() {
 #[test]
 fn every_question_is_asked_once_and_answered_before_it_counts_as_ready() {
     let mut bench = Bench::new(Board::at(FIELD));
-    while bench.link.remote().state() != RemoteState::Ready {
+    while bench.link.protocol().view().state != RemoteState::Ready {
         bench.run(0.01);
     }
     assert_eq!(
@@ -236,9 +239,9 @@ fn what_does_not_say_that_it_is_betaflight_is_of_no_use() {
     let mut bench = Bench::new(Board { variant: None, ..Board::at(FIELD) });
     bench.run(5.0);
     assert!(
-        matches!(bench.link.remote().state(), RemoteState::Unusable(_)),
+        matches!(bench.link.protocol().view().state, RemoteState::Unusable(_)),
         "{:?}",
-        bench.link.remote().state()
+        bench.link.protocol().view().state
     );
     assert!(bench.was_reported("does not identify itself"), "{:?}", bench.reported);
 }
@@ -246,7 +249,10 @@ fn what_does_not_say_that_it_is_betaflight_is_of_no_use() {
 #[test]
 fn a_return_home_can_be_taken_back_as_long_as_its_switch_is_on() {
     let is_on = |bench: &Bench| {
-        rescue::is_on(bench.link.remote().observer(), &bench.vehicle.transmitter().sticks().channels)
+        rescue::is_on(
+            bench.link.protocol().msp().unwrap().observer(),
+            &bench.vehicle.transmitter().sticks().channels,
+        )
     };
     let mut bench = Bench::new(Board::at(FIELD));
     assert_eq!(is_on(&bench), None, "no switch was reported");

@@ -212,6 +212,7 @@ impl Firmware {
         let source: Option<RcSource> = self.receiver().sources().in_charge();
         CraftView {
             armed: Some(self.safety.arming.armed()),
+            mode_name: None,
             modes: Some(self.modes),
             arming_blocked_by: Some(self.arming_blocks()),
             gps_fix: Some(self.gps_fix()),

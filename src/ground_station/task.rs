@@ -10,13 +10,13 @@ use tokio_util::task::TaskTracker;
 
 use super::answers::{Waiting, as_set, outcome, shortened, taken, without_effect};
 use super::controls::{self, Controls, Refused, Until};
-use super::missions::{self, Mission};
 use super::rc::rc_frame;
 use super::sockets::{DoorError, Incoming, Sockets};
 use super::state::{craft_state, home, is_on_ground};
 use super::texts::{Texts, ascii};
 use super::{GroundStationOptions, fences, parameters};
 use crate::fc::CraftSettings;
+use crate::fc::missions::{self, Mission};
 use crate::mavlink::MissionItem;
 use crate::mavlink::craft::{Answer, CraftOptions, CraftProtocol, Lifetime, Request, RequestKind, Ticket};
 use crate::mavlink::value::{CommandResult, MissionResult};

@@ -137,7 +137,7 @@ pub(crate) fn open(
     let is_set = |(file, words): &(PathBuf, String)| matches!(state_file::read(file, MAX_NOTE), Ok(Some(noted)) if noted == words.as_bytes());
     match note {
         None if lines.is_empty() => {}
-        None => link.remote_mut().provision(Provision::new(lines, firmware.may_write)),
+        None => link.protocol_mut().provision(Provision::new(lines, firmware.may_write)),
         Some(note) if !is_fresh && lines.is_empty() && is_set(&note) => {}
         Some(note) => {
             let mut provision = Provision::new(lines, is_fresh || firmware.may_write);
@@ -145,7 +145,7 @@ pub(crate) fn open(
                 let fresh = starter_lines(&firmware.lines, true).map_err(AppError::internal)?;
                 provision = provision.or_when_bare(fresh);
             }
-            link.remote_mut().provision(provision.noted_in(note.0, note.1));
+            link.protocol_mut().provision(provision.noted_in(note.0, note.1));
         }
     }
     Ok(OpenLink { link, is_fresh, stored_in, directory, not_in_steps })

@@ -166,7 +166,7 @@ impl RemoteRun {
     }
 
     fn remote(&self) -> Option<&Remote> {
-        self.runner.link().map(RemoteLink::remote)
+        self.runner.link().and_then(|link| link.protocol().msp())
     }
 
     /// Waits until the firmware answers and its setup is reported.

@@ -5,6 +5,7 @@
 mod place;
 mod serial;
 mod tcp;
+mod udp;
 mod ws;
 
 use std::io::{self, ErrorKind};
@@ -42,6 +43,8 @@ pub enum StreamEvent {
     /// The connection is lost or could not be made, with the reason as part of a sentence. Another attempt
     /// follows by itself. The same reason is not reported again until a connection was made.
     Lost(String),
+    /// A sentence for the user about the stream.
+    Notice(String),
 }
 
 /// The session's end of the stream. The task at the other end ends when this is dropped.
@@ -123,6 +126,8 @@ async fn connect(
         FcPlace::WebSocket(uri) => {
             ws::connect(uri).await.map(|socket| Connection::WebSocket(Box::new(socket)))
         }
+        FcPlace::Udp(address) => udp::bind(*address).await.map(Connection::Udp),
+        FcPlace::Mavlink(place) => return Box::pin(connect(place, to, from, reported)).await,
     };
     let connection = match connection {
         Ok(connection) => connection,
@@ -142,6 +147,7 @@ async fn connect(
         },
         Connection::Tcp(stream) => pump(stream, to, from, &mut heard).await,
         Connection::WebSocket(socket) => ws::pump(*socket, to, from, &mut heard).await,
+        Connection::Udp(socket) => udp::pump(&socket, to, from).await,
     };
     match ended {
         Ended::Lost(why) if why == CLOSED && !heard && begun.elapsed() < PAUSE_LONGEST => {
@@ -156,6 +162,7 @@ enum Connection {
     Tcp(tokio::net::TcpStream),
     /// Boxed because it is large.
     WebSocket(Box<ws::Socket>),
+    Udp(tokio::net::UdpSocket),
 }
 
 /// Moves bytes until the connection is lost or the session no longer needs them. Sets `heard` once bytes have

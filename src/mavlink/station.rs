@@ -191,6 +191,11 @@ impl StationProtocol {
         &self.reader
     }
 
+    /// Returns the number of the first item of a mission after the home item, in numbers of the craft.
+    pub fn first_item(&self) -> u16 {
+        self.habits().is_some_and(|habits| habits.has_home_item).into()
+    }
+
     /// Returns the names of the modes of the craft.
     pub fn mode_names(&self) -> Vec<String> {
         self.craft.as_ref().map(|craft| craft.modes.names(craft.number)).unwrap_or_default()

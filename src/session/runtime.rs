@@ -388,7 +388,7 @@ impl Session {
 
     /// Returns the access to the craft.
     fn access(&self) -> Access {
-        self.runner.link.as_ref().map_or(Access::Everything, |link| link.remote().access())
+        self.runner.link.as_ref().map_or(Access::Everything, |link| link.protocol().access())
     }
 
     /// Sends the vehicle's data for its remote flight controller, and takes the data from it.
@@ -452,7 +452,7 @@ impl Session {
             upload: self.interface.upload_under_way(),
             endpoints,
             simulator: self.simulator.as_ref().map(Simulator::state),
-            remote: link.map(|link| link.remote().view()),
+            remote: link.map(|link| link.protocol().view()),
             timeline: self.timeline_view(),
             commands_taken: self.commands.taken(),
             events_sent: self.events.sent(),

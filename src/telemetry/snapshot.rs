@@ -163,6 +163,9 @@ pub struct CraftView {
     pub armed: Option<bool>,
     /// The active modes.
     pub modes: Option<ModeFlags>,
+    /// The name of the mode, of a craft whose modes are not those of Betaflight.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub mode_name: Option<String>,
     /// The arming disable flags that are set; empty while armed.
     pub arming_blocked_by: Option<ArmingFlags>,
     /// `true` with a 3-D fix.

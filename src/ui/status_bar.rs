@@ -60,6 +60,9 @@ fn craft(state: &Shared) -> Vec<Span<'static>> {
         Some(false) => span(theme, Role::Ok, " ○ DISARMED "),
         None => span(theme, Role::Dim, " ○ — "),
     }];
+    if let Some(name) = &craft.mode_name {
+        spans.push(span(theme, Role::Target, format!("{name} ")));
+    }
     for mode in modes(craft) {
         let role = match mode {
             Mode::Failsafe => Role::Fault,

@@ -9,6 +9,7 @@ use crate::blackbox::decode::LogSource as _;
 use crate::files::input_file;
 use crate::files::log_source::{FileSource, has_log};
 use crate::files::recording_file::GZIP;
+use crate::files::telemetry_log;
 use crate::process::error::AppError;
 use crate::recording::{Setup, read_setup};
 use crate::replay::{LogFlights, PastFlights, RecordedFlights};
@@ -46,12 +47,17 @@ pub(super) fn open(path: &Path) -> Result<Opened, AppError> {
     if head.starts_with(&GZIP) {
         return Ok(Opened::Recording(RecordedFlights::new(&name, source)));
     }
+    if telemetry_log::is_log(&head) {
+        let recording = telemetry_log::recording(&name, &mut source)
+            .map_err(|error| AppError::environment(format!("cannot read {name}: {error}")))?;
+        return Ok(Opened::Recording(RecordedFlights::new(&name, recording)));
+    }
     if has_log(&head) || size > LOOKED_AT as u64 {
         return Ok(Opened::Logs(LogFlights::new(&name, source)));
     }
     Err(AppError::input(format!(
-        "{name} is no recorded flight: a blackbox log begins with the line `{FIRST_LINE}`, and a recording is a file of \
-         `betadeck fly --record`"
+        "{name} is no recorded flight: a blackbox log begins with the line `{FIRST_LINE}`, a recording is a file of \
+         `betadeck fly --record`, and a telemetry log (.tlog) is one of a MAVLink ground station"
     )))
 }
 

@@ -10,7 +10,7 @@ use crate::telemetry::{
 
 /// The values of the last report.
 #[derive(Debug, Clone, Default)]
-pub(super) struct EventObserver {
+pub(in crate::fc) struct EventObserver {
     fix: bool,
     armed: bool,
     modes: ModeFlags,
@@ -26,7 +26,7 @@ pub(super) struct EventObserver {
 
 impl EventObserver {
     /// Returns the events since the previous report.
-    pub(super) fn follow(
+    pub(in crate::fc) fn follow(
         &mut self,
         craft: &CraftView,
         nav: Option<&NavTelemetry>,
@@ -73,7 +73,7 @@ impl EventObserver {
     }
 
     /// Returns the reason for the last disarming, as far as it is known.
-    pub(super) fn last_disarm(&self) -> Option<DisarmReason> {
+    pub(in crate::fc) fn last_disarm(&self) -> Option<DisarmReason> {
         self.last_disarm
     }
 

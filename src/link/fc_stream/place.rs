@@ -1,6 +1,7 @@
-//! The address of a flight controller: a serial port, a TCP port or a websocket.
+//! The address of a flight controller: a serial port, a TCP port or a websocket, and the protocol at it.
 
 use std::fmt;
+use std::net::{IpAddr, Ipv4Addr, SocketAddr};
 use std::path::PathBuf;
 use std::str::FromStr;
 
@@ -29,6 +30,10 @@ pub enum FcPlace {
         /// The address, `ws://…` or `wss://…`.
         Uri,
     ),
+    /// A UDP port of this machine, to which the craft sends MAVLink.
+    Udp(SocketAddr),
+    /// One of the others with a craft that speaks MAVLink.
+    Mavlink(Box<Self>),
 }
 
 /// The error for a text that is not the address of a flight controller.
@@ -41,6 +46,12 @@ impl FcPlaceError {
         const ALLOWED: &str = "allowed are serial:DEVICE[,BAUD], tcp:HOST:PORT and ws:URL";
         Self(format!("{what}; {ALLOWED}, such as {example}"))
     }
+
+    fn of_mavlink(what: impl fmt::Display) -> Self {
+        const ALLOWED: &str =
+            "allowed after mavlink: are udp:[ADDRESS:]PORT, tcp:HOST:PORT and serial:DEVICE[,BAUD]";
+        Self(format!("{what}; {ALLOWED}, such as mavlink:udp:14550"))
+    }
 }
 
 impl FcPlace {
@@ -48,8 +59,14 @@ impl FcPlace {
     pub fn bytes_per_s(&self) -> Option<u32> {
         match self {
             Self::Serial { baud, .. } => Some(baud / BITS_PER_BYTE),
-            Self::Tcp { .. } | Self::WebSocket(_) => None,
+            Self::Tcp { .. } | Self::WebSocket(_) | Self::Udp(_) => None,
+            Self::Mavlink(place) => place.bytes_per_s(),
         }
+    }
+
+    /// Returns `true` if the craft speaks MAVLink.
+    pub fn speaks_mavlink(&self) -> bool {
+        matches!(self, Self::Mavlink(_))
     }
 }
 
@@ -63,6 +80,10 @@ impl FromStr for FcPlace {
             Some(("ws", rest)) if rest.starts_with("//") => websocket(text),
             Some(("ws", url)) => websocket(url),
             Some(("wss", _)) => websocket(text),
+            Some(("mavlink", place)) => mavlink(place).map(|place| Self::Mavlink(Box::new(place))),
+            Some(("udp", _)) => Err(FcPlaceError::of_mavlink(format!(
+                "{text} does not name the protocol: only MAVLink comes over UDP"
+            ))),
             _ if text.starts_with('/') => Err(FcPlaceError::new(
                 format!("{text} does not say how to connect"),
                 format!("serial:{text}"),
@@ -73,6 +94,26 @@ impl FromStr for FcPlace {
             )),
         }
     }
+}
+
+fn mavlink(text: &str) -> Result<FcPlace, FcPlaceError> {
+    match text.split_once(':') {
+        Some(("udp", address)) => udp(address),
+        Some(("tcp" | "serial", _)) => text.parse(),
+        _ => {
+            Err(FcPlaceError::of_mavlink(format!("\"{text}\" is not a place of a craft that speaks MAVLink")))
+        }
+    }
+}
+
+/// Reads the port, and the address of this machine at which it listens: the loopback without one.
+fn udp(text: &str) -> Result<FcPlace, FcPlaceError> {
+    let port = |text: &str| text.parse().ok().filter(|port: &u16| *port > 0);
+    let on_loopback = || Some(SocketAddr::new(IpAddr::V4(Ipv4Addr::LOCALHOST), port(text)?));
+    let address = on_loopback().or_else(|| text.parse().ok()).filter(|address| address.port() > 0);
+    address.map(FcPlace::Udp).ok_or_else(|| {
+        FcPlaceError::of_mavlink(format!("\"{text}\" is not a port (1 to 65535), alone or after an address"))
+    })
 }
 
 fn serial(text: &str) -> Result<FcPlace, FcPlaceError> {
@@ -151,6 +192,11 @@ impl fmt::Display for FcPlace {
                 write!(f, "{}", uri.to_string().trim_end_matches('/'))
             }
             Self::WebSocket(uri) => write!(f, "{uri}"),
+            Self::Udp(address) if address.ip() == IpAddr::V4(Ipv4Addr::LOCALHOST) => {
+                write!(f, "udp:{}", address.port())
+            }
+            Self::Udp(address) => write!(f, "udp:{address}"),
+            Self::Mavlink(place) => write!(f, "mavlink:{place}"),
         }
     }
 }
@@ -178,6 +224,12 @@ mod tests {
             ("ws:wss://craft.example/fc", "wss://craft.example/fc"),
             #[cfg(feature = "tls")]
             ("wss://craft.example", "wss://craft.example"),
+            ("mavlink:udp:14550", "mavlink:udp:14550"),
+            ("mavlink:udp:127.0.0.1:14550", "mavlink:udp:14550"),
+            ("mavlink:udp:0.0.0.0:14550", "mavlink:udp:0.0.0.0:14550"),
+            ("mavlink:udp:[::1]:14550", "mavlink:udp:[::1]:14550"),
+            ("mavlink:tcp:localhost:5760", "mavlink:tcp:localhost:5760"),
+            ("mavlink:serial:/dev/ttyUSB0,57600", "mavlink:serial:/dev/ttyUSB0,57600"),
         ] {
             let place: FcPlace = text.parse().unwrap_or_else(|error| panic!("{text}: {error}"));
             assert_eq!(place.to_string(), shown, "{text}");
@@ -213,6 +265,21 @@ mod tests {
         }
     }
 
+    #[test]
+    fn a_refusal_of_a_mavlink_place_says_what_is_allowed_there() {
+        for (text, part) in [
+            ("udp:14550", "does not name the protocol"),
+            ("mavlink:14550", "\"14550\" is not a place"),
+            ("mavlink:ws://localhost:1", "is not a place"),
+            ("mavlink:mavlink:udp:14550", "is not a place"),
+            ("mavlink:udp:0", "1 to 65535"),
+            ("mavlink:udp:localhost:14550", "alone or after an address"),
+        ] {
+            let reported = refusal(text);
+            assert!(reported.contains(part) && reported.contains("such as mavlink:udp:14550"), "{reported}");
+        }
+    }
+
     #[cfg(not(feature = "tls"))]
     #[test]
     fn a_place_with_tls_is_refused_with_the_way_to_get_it() {
@@ -232,7 +299,7 @@ mod tests {
     proptest::proptest! {
         #[test]
         fn any_text_is_read_or_refused_and_what_is_read_is_shown_as_it_is_typed(
-            text in "(serial:|tcp:|ws:|wss://|ws://)?[a-z0-9/.:,\\[\\]? @é-]{0,30}",
+            text in "(mavlink:)?(udp:|serial:|tcp:|ws:|wss://|ws://)?[a-z0-9/.:,\\[\\]? @é-]{0,30}",
         ) {
             if let Ok(place) = text.parse::<FcPlace>() {
                 proptest::prop_assert_eq!(place.to_string().parse(), Ok(place));

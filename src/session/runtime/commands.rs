@@ -76,7 +76,7 @@ impl Session {
             }
             Command::PermitChanges(connection) => {
                 if let Some(remote) = &mut self.runner.link {
-                    remote.remote_mut().permit_changes(connection);
+                    remote.protocol_mut().permit_changes(connection);
                 }
                 // Permission for an earlier connection has no effect.
                 if self.access() != Access::Reading {
@@ -126,7 +126,7 @@ impl Session {
         let is_pictures = self.timeline.as_ref().is_some_and(Timeline::is_pictures);
         Facts {
             access: self.access(),
-            remote: self.runner.link.as_ref().map(|link| RemoteFacts::from(&link.remote().view())),
+            remote: self.runner.link.as_ref().map(|link| RemoteFacts::from(&link.protocol().view())),
             simulator: self.simulator.as_ref().map(Simulator::state),
             upload: self.interface.upload_under_way(),
             is_piloted: self.vehicle.transmitter().pilot().is_some(),

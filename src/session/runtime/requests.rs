@@ -52,7 +52,7 @@ impl Session {
             let request = match refuse_request(request, access) {
                 Ok(request) => request,
                 Err(denial) => {
-                    let connection = self.runner.link.as_ref().map(|link| link.remote().connection());
+                    let connection = self.runner.link.as_ref().map(|link| link.protocol().connection());
                     self.refused_over.retain(|(over, _)| *over == connection);
                     if !self.refused_over.contains(&(connection, denial)) {
                         self.refused_over.push((connection, denial));

@@ -156,8 +156,8 @@ fn a_simulated_craft_that_is_master_gets_gains_to_land_with_and_a_real_one_those
             let stream = FcStream { to, from, place: "tcp:here:1".to_owned(), bytes_per_s: None };
             let ends = RemoteEnds { name: "the board".to_owned(), stream, peer: None, child: None };
             let mut link = RemoteLink::new(ends, Instant::now());
-            let connection = link.remote().connection();
-            link.remote_mut().permit_changes(connection);
+            let connection = link.protocol().connection();
+            link.protocol_mut().permit_changes(connection);
             rig.session.runner.link = Some(link);
         }
         let altitude_reference = AltitudeReference::SeaLevel { home_m: Some(300.0) };

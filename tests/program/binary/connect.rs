@@ -282,3 +282,84 @@ fn answer_as(mut stream: TcpStream, variant: Option<&[u8; 4]>) {
         }
     }
 }
+
+/// A craft that speaks MAVLink: the embedded firmware behind its door for ground stations.
+struct MavlinkCraft {
+    /// It is killed when dropped.
+    _program: crate::doors::program::Program,
+    place: String,
+}
+
+impl MavlinkCraft {
+    fn start() -> Self {
+        let options = "serve --fresh --ws-port 0 --tcp-port 0 --udp-ports 0,0,0,0 --mavlink tcp:0 --mavlink-as ardupilot";
+        let mut program = crate::doors::program::Program::start(&options.split(' ').collect::<Vec<_>>());
+        let place = program.wait("address of the door", |line| {
+            let address = line.split("MAVLink: listens on ").nth(1)?.split(',').next()?;
+            Some(format!("mavlink:tcp:{address}"))
+        });
+        Self { _program: program, place }
+    }
+}
+
+#[test]
+fn a_craft_that_speaks_mavlink_is_read_planned_and_recorded() {
+    let craft = MavlinkCraft::start();
+    let options = ["square", "--connect", &craft.place, "--fresh", "--tlog", "a.tlog"];
+    let mut terminal = Terminal::betadeck(120, 40, &options);
+    terminal.until_shown("ArduPilot quadcopter");
+    terminal.until("its mode, fix and battery", |terminal| {
+        let row = terminal.row(0);
+        row.contains("DISARMED Acro") && row.contains("3D") && !row.contains("— V")
+    });
+    terminal.send("F");
+    terminal.until_shown("This craft is real");
+    terminal.send("U");
+    terminal.until_shown("Change the craft?");
+    terminal.send("y");
+    terminal.until_shown("✓ on the craft");
+    terminal.send("5mode Stabilize\r");
+    terminal.until_shown("the craft refused");
+    terminal.send("mode Loiter\r");
+    terminal.until_shown("accepted");
+    // The switches move; on the ground the craft levels only.
+    terminal.until("its new mode", |terminal| terminal.row(0).contains("DISARMED Stabilize"));
+    terminal.send("arm\r");
+    terminal.until_shown("has no line arm");
+    drop(craft);
+    terminal.until("a lost craft", |terminal| terminal.row(0).starts_with(" ○ —"));
+    terminal.send("\x1b");
+    terminal.until("the panel left", |terminal| !terminal.screen().contains("Esc leave"));
+    terminal.send("q");
+    assert_eq!(terminal.end(), 0);
+
+    let mut replay = Terminal::start_in(
+        terminal.into_home(),
+        120,
+        40,
+        crate::binary::support::PROGRAM,
+        &["replay", "a.tlog", "--at", "boot+9999"],
+    );
+    replay.until_shown("REPLAY");
+    replay.until("the plan of the craft on the map", |terminal| terminal.screen().contains("◆0 FLYOVER"));
+    replay.send("q");
+    assert_eq!(replay.end(), 0);
+}
+
+#[test]
+fn telemetry_logs_of_other_autopilots_are_shown_with_their_own_modes() {
+    for (columns, rows) in [(80, 24), (120, 40)] {
+        for name in ["arducopter", "px4", "inav"] {
+            let file = format!("{}/tests/exchange/mavlink/{name}.tlog", env!("CARGO_MANIFEST_DIR"));
+            let mut terminal = Terminal::betadeck(columns, rows, &["replay", &file, "--at", "28"]);
+            terminal.until("the craft on its way", |terminal| {
+                let screen = terminal.screen();
+                screen.contains("REPLAY")
+                    && ["◇1 FLYBY", "━━", "< > 10 s"].iter().all(|text| screen.contains(text))
+            });
+            insta::assert_snapshot!(format!("{name}_{columns}x{rows}"), terminal.screen());
+            terminal.send("q");
+            assert_eq!(terminal.end(), 0);
+        }
+    }
+}

@@ -10,7 +10,7 @@ use super::shell::words;
 use crate::binary::support::Sandbox;
 
 /// Options whose value is a file that the command writes.
-const OUTPUTS: [&str; 13] = [
+const OUTPUTS: [&str; 14] = [
     "--json",
     "--csv",
     "--gpx",
@@ -23,6 +23,7 @@ const OUTPUTS: [&str; 13] = [
     "--junit",
     "--svg",
     "--out",
+    "--tlog",
     ">",
 ];
 

@@ -185,7 +185,12 @@ impl Desk {
         if line.contains("open square.flight") || line.contains("replay square.flight") {
             self.sandbox.run(&["fly", "land", "--record", "square.flight"]).exits(0);
         }
-        let line = &self.of_campaign(line);
+        if line.contains("replay flight.tlog") {
+            let log = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/exchange/mavlink/px4.tlog");
+            std::fs::copy(log, self.sandbox.path("flight.tlog")).expect("a writable directory");
+        }
+        let port = format!("mavlink:udp:{}", free_port());
+        let line = &self.of_campaign(line).replace("mavlink:udp:14550", &port);
         // The exit code is that of the command, and the shell reads it after a Ctrl-C, too.
         let script = format!("{}; trap : INT; {before}{line}\nexit $?\n", self.variables);
         let mut terminal = Terminal::start_in(self.sandbox, 200, 60, "/bin/sh", &["-c", &script]);
