@@ -124,6 +124,9 @@ impl Controls {
         if !view.vehicle.craft.is_armed() {
             return Err(not_now("The craft is disarmed: arm first."));
         }
+        if !is_on_ground(&view.vehicle) {
+            return Err(not_now("The craft is in the air."));
+        }
         let mut frame = self.frame(view, now);
         hold(view, &mut frame);
         frame.channels[THROTTLE] = CLIMB_US;

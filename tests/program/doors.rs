@@ -13,6 +13,7 @@ mod app;
 mod app_flow;
 mod ground_station;
 mod hostile_clients;
+mod hostile_stations;
 mod logs;
 mod lost_time;
 mod memory;

@@ -17,7 +17,7 @@ const ARM: u16 = 400;
 const TAKE_OFF: u16 = 22;
 
 /// Starts a session at twenty times real time with a door for ground stations. Returns the address of the door.
-fn serve(more: &[&str]) -> (Program, SocketAddr) {
+pub(super) fn serve(more: &[&str]) -> (Program, SocketAddr) {
     let mut program = start(&[&["--mavlink", "tcp:0"], more].concat());
     let address = program.wait("address of the door", |line| {
         line.split("MAVLink: listens on ").nth(1)?.split(',').next()?.parse().ok()
@@ -33,7 +33,7 @@ fn start(more: &[&str]) -> Program {
 }
 
 /// A ground station that is connected to the door.
-struct Station {
+pub(super) struct Station {
     stream: TcpStream,
     protocol: StationProtocol,
     began: Instant,
@@ -42,7 +42,7 @@ struct Station {
 }
 
 impl Station {
-    fn connect(address: SocketAddr) -> Self {
+    pub(super) fn connect(address: SocketAddr) -> Self {
         let stream = TcpStream::connect(address).unwrap();
         stream.set_read_timeout(Some(Duration::from_millis(5))).unwrap();
         let protocol = StationProtocol::new(StationOptions::default());
@@ -102,7 +102,7 @@ impl Station {
     }
 
     /// Waits for a text.
-    fn says(&mut self, words: &str) {
+    pub(super) fn says(&mut self, words: &str) {
         self.until(words, |_, event| match event {
             Event::Text(text) => text.text.contains(words).then_some(()),
             _ => None,
@@ -110,7 +110,7 @@ impl Station {
     }
 
     /// Sends a command that the protocol of a station does not have.
-    fn command(&mut self, command: u16, param1: f32, param7: f32) {
+    pub(super) fn command(&mut self, command: u16, param1: f32, param7: f32) {
         self.sequence = self.sequence.wrapping_add(1);
         let message = CommandLong {
             command,
@@ -132,6 +132,42 @@ impl Station {
         })
     }
 
+    /// Uploads a mission over two corners to a landing, and reads it back.
+    pub(super) fn uploads_a_square(&mut self) {
+        let here = self.position();
+        let items = vec![
+            item(16, 4000, 0, 12.0, &here),
+            item(16, 4000, 5000, 12.0, &here),
+            item(21, 0, 5000, 0.0, &here),
+        ];
+        self.protocol.upload(MissionKind::Mission, items.clone()).unwrap();
+        assert_eq!(self.transfer(), TransferEnd::Sent(MissionKind::Mission), "{}", self.texts);
+        self.says("LAND is that of the ground");
+        self.protocol.download(MissionKind::Mission).unwrap();
+        let TransferEnd::Received { items: back, .. } = self.transfer() else { panic!("no items") };
+        let places = |items: &[MissionItem]| {
+            items.iter().map(|item| (item.command, item.x, item.y)).collect::<Vec<_>>()
+        };
+        assert_eq!(places(&back), places(&items));
+    }
+
+    /// Arms, takes off, flies the mission to its second item, and returns home.
+    pub(super) fn flies_the_square_and_returns(&mut self) {
+        self.arm();
+        self.command(TAKE_OFF, 0.0, 8.0);
+        self.until("8 m", |protocol, _| {
+            protocol.report().altitude_above_home.as_ref().filter(|heard| heard.value > 7.5).map(|_| ())
+        });
+        self.command(ARM, 0.0, 0.0);
+        self.says("would fall");
+        self.protocol.order(&Order::StartMission).unwrap();
+        self.until("the second item", |_, event| (*event == Event::ItemReached(1)).then_some(()));
+        self.protocol.order(&Order::ReturnHome).unwrap();
+        self.is_armed(false);
+        let home = self.protocol.report().local_ned.as_ref().map(|heard| heard.value).unwrap();
+        assert!(home[0].hypot(home[1]) < 5.0, "{home:?}");
+    }
+
     fn transfer(&mut self) -> TransferEnd {
         self.until("end of the transfer", |_, event| match event {
             Event::Transfer(end) => Some(end.clone()),
@@ -141,10 +177,13 @@ impl Station {
 }
 
 /// Returns the bytes of a message from a ground station.
-fn packet(sequence: u8, message: impl Into<Message>) -> Vec<u8> {
-    let frame =
-        Frame { version: Version::V2, sequence, system: 255, component: 190, message: message.into() };
-    frame.encode().unwrap()
+pub(super) fn packet(sequence: u8, message: impl Into<Message>) -> Vec<u8> {
+    frame_of(Version::V2, 255, sequence, message)
+}
+
+/// Does the same as [`packet`] for a version of the protocol and a system.
+pub(super) fn frame_of(version: Version, system: u8, sequence: u8, message: impl Into<Message>) -> Vec<u8> {
+    Frame { version, sequence, system, component: 190, message: message.into() }.encode().unwrap()
 }
 
 fn item(command: u16, north_e7: i32, east_e7: i32, alt_m: f32, home: &GeoPosition) -> MissionItem {
@@ -164,36 +203,10 @@ fn item(command: u16, north_e7: i32, east_e7: i32, alt_m: f32, home: &GeoPositio
 fn a_ground_station_uploads_a_mission_reads_it_back_and_flies_it_home() {
     let (_program, address) = serve(&["--mavlink-as", "px4"]);
     let mut station = Station::connect(address);
-    let here = station.position();
-    let items = vec![
-        item(16, 4000, 0, 12.0, &here),
-        item(16, 4000, 5000, 12.0, &here),
-        item(21, 0, 5000, 0.0, &here),
-    ];
-    station.protocol.upload(MissionKind::Mission, items.clone()).unwrap();
-    assert_eq!(station.transfer(), TransferEnd::Sent(MissionKind::Mission), "{}", station.texts);
-    station.says("LAND is that of the ground");
-    station.protocol.download(MissionKind::Mission).unwrap();
-    let TransferEnd::Received { items: back, .. } = station.transfer() else { panic!("no items") };
-    let places =
-        |items: &[MissionItem]| items.iter().map(|item| (item.command, item.x, item.y)).collect::<Vec<_>>();
-    assert_eq!(places(&back), places(&items));
-
+    station.uploads_a_square();
     station.command(TAKE_OFF, 0.0, 8.0);
     station.says("arm first");
-    station.arm();
-    station.command(TAKE_OFF, 0.0, 8.0);
-    station.until("8 m", |protocol, _| {
-        protocol.report().altitude_above_home.as_ref().filter(|heard| heard.value > 7.5).map(|_| ())
-    });
-    station.command(ARM, 0.0, 0.0);
-    station.says("would fall");
-    station.protocol.order(&Order::StartMission).unwrap();
-    station.until("the second item", |_, event| (*event == Event::ItemReached(1)).then_some(()));
-    station.protocol.order(&Order::ReturnHome).unwrap();
-    station.is_armed(false);
-    let home = station.protocol.report().local_ned.as_ref().map(|heard| heard.value).unwrap();
-    assert!(home[0].hypot(home[1]) < 5.0, "{home:?}");
+    station.flies_the_square_and_returns();
 }
 
 #[test]

@@ -18,7 +18,7 @@ const CLIENTS: usize = 4;
 const BOUND_KIB: u64 = 16 * 1024;
 
 /// Returns the peak memory of a process, KiB.
-fn peak_kib(process: u32) -> u64 {
+pub(super) fn peak_kib(process: u32) -> u64 {
     let status = std::fs::read_to_string(format!("/proc/{process}/status")).unwrap();
     let peak = status.lines().find_map(|line| line.strip_prefix("VmHWM:")).unwrap();
     peak.trim().trim_end_matches(" kB").parse().unwrap()
