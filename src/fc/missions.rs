@@ -9,7 +9,7 @@ use crate::mavlink::MissionItem;
 use crate::mavlink::state::GeoPosition;
 use crate::mavlink::value::{MissionResult, position_frame};
 use crate::plan::FlightPlan;
-use crate::plan::format::loss::{LossReport, Severity};
+use crate::plan::format::loss::{Finding, LossReport, Severity};
 use crate::plan::format::{self, Format, HomePosition, PlanFile, ReadOptions};
 
 /// The first line of a waypoint file.
@@ -116,11 +116,12 @@ pub fn plan(
     }
 }
 
-/// Returns the differences that matter, as sentences. Items count from 0.
+/// Returns the differences that matter, as sentences. They name waypoints: items have other numbers in each ground station.
 fn lines(losses: &LossReport) -> Vec<String> {
     let matters = |severity: Severity| severity >= Severity::Assumed;
     let findings = losses.findings.iter().filter(|finding| matters(finding.severity));
-    findings.map(|finding| finding.to_string().split_whitespace().collect::<Vec<_>>().join(" ")).collect()
+    let sentence = |finding: &Finding| Finding { item: None, place: None, ..finding.clone() }.to_string();
+    findings.map(|finding| sentence(finding).split_whitespace().collect::<Vec<_>>().join(" ")).collect()
 }
 
 /// Returns a mission as a waypoint file.

@@ -14,6 +14,7 @@ mod app_flow;
 mod ground_station;
 mod hostile_clients;
 mod hostile_stations;
+mod judges;
 mod logs;
 mod lost_time;
 mod memory;

@@ -18,17 +18,22 @@ const TAKE_OFF: u16 = 22;
 
 /// Starts a session at twenty times real time with a door for ground stations. Returns the address of the door.
 pub(super) fn serve(more: &[&str]) -> (Program, SocketAddr) {
-    let mut program = start(&[&["--mavlink", "tcp:0"], more].concat());
+    serve_at("20", more)
+}
+
+/// Does the same as [`serve`] at another speed.
+pub(super) fn serve_at(speed: &str, more: &[&str]) -> (Program, SocketAddr) {
+    let mut program = start(speed, &[&["--mavlink", "tcp:0"], more].concat());
     let address = program.wait("address of the door", |line| {
         line.split("MAVLink: listens on ").nth(1)?.split(',').next()?.parse().ok()
     });
     (program, address)
 }
 
-/// Starts a session at twenty times real time.
-fn start(more: &[&str]) -> Program {
-    let options = "serve --fresh --ws-port 0 --tcp-port 0 --udp-ports 0,0,0,0 --speed 20";
-    let arguments = options.split(' ').chain(more.iter().copied()).collect::<Vec<_>>();
+/// Starts a session.
+fn start(speed: &str, more: &[&str]) -> Program {
+    let options = "serve --fresh --ws-port 0 --tcp-port 0 --udp-ports 0,0,0,0 --speed";
+    let arguments = options.split(' ').chain([speed]).chain(more.iter().copied()).collect::<Vec<_>>();
     Program::start(&arguments)
 }
 
@@ -258,7 +263,7 @@ fn a_web_page_cannot_reach_the_door_by_a_datagram_with_a_frame_inside() {
     let listener = UdpSocket::bind("127.0.0.1:0").unwrap();
     listener.set_read_timeout(Some(PATIENCE)).unwrap();
     let place = format!("udp:{}", listener.local_addr().unwrap().port());
-    let _program = start(&["--mavlink", &place]);
+    let _program = start("20", &["--mavlink", &place]);
     let (mut buffer, mut reader) = ([0; 2048], FrameReader::default());
     let (length, door) = listener.recv_from(&mut buffer).unwrap();
     assert!(reader.next_frame(&mut &buffer[..length]).is_some(), "the door sends frames of its own accord");
