@@ -7,6 +7,7 @@ mod sentences;
 
 use crate::scenario::{Insight, Judgement, Outcome};
 use crate::signals::SimTime;
+use crate::telemetry::FirmwareProfile;
 
 pub use json::{flight_line, summary_line};
 pub use junit::junit;
@@ -54,6 +55,8 @@ pub struct CheckedFlight {
     pub wall_s: f64,
     /// Equal for flights that are the same to the last bit.
     pub hash: u64,
+    /// The kind of its firmware, if it is known.
+    pub firmware: Option<FirmwareProfile>,
     /// The knowledge that the flight controller gave.
     pub reported: Insight,
     /// `true` if a remote flight controller flew.

@@ -256,6 +256,15 @@ pub struct Compare {
     pub label: String,
     /// Line in the file, from 1.
     pub line: usize,
+    /// The kind of firmware for which it holds; `None` = all.
+    pub firmware: Option<FirmwareProfile>,
     /// The condition on their measures, `CASE.MEASURE`.
     pub that: Condition,
+}
+
+impl Compare {
+    /// Returns `true` if it holds for this kind of firmware, as [`Expectation::holds_for`] does.
+    pub fn holds_for(&self, firmware: Option<FirmwareProfile>) -> bool {
+        self.firmware.is_none_or(|own| Some(own) == firmware)
+    }
 }

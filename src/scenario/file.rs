@@ -455,7 +455,8 @@ fn read_compares(top: &TomlTable<'_, '_>, cases: &[Case], reader: &mut Reader<'_
         let Some(value) = reader.required(&table, "that") else { continue };
         let label = reader.string(&table, "name").or_else(|| reader.text(value)).unwrap_or_default();
         if let Some(that) = reader.expression(value, |cursor| scope.read_condition(cursor)) {
-            compares.push(Compare { label, line: reader.line(value.span()), that });
+            let firmware = expect::read_firmware(&table, reader);
+            compares.push(Compare { label, line: reader.line(value.span()), firmware, that });
         }
     }
     compares

@@ -1,7 +1,7 @@
 //! The knowledge that is needed to judge a flight. Truth is always known; a remote flight controller reports only a
 //! part.
 
-use super::case::{Case, Expectation, Expected, Measured, Window};
+use super::case::{Case, Expectation, Expected, Measured, StateStep, Window};
 use super::expression::{Anchor, Bound, Comparison, Condition, Instant, Number, Place};
 use super::happening::{EventName, Pattern};
 use super::input::Action;
@@ -184,6 +184,7 @@ impl<'a> Needs<'a> {
 
     pub(super) fn expectation(&self, expectation: &Expectation) -> Insight {
         let expected = match &expectation.expected {
+            Expected::States(steps) if steps.iter().any(is_of_another_plan) => Insight::Inner,
             Expected::Result(_) | Expected::States(_) => Insight::Mission,
             Expected::Event { pattern, within, with, .. } => {
                 let instant = within.as_ref().map_or(Insight::Truth, |(_, _, instant)| self.instant(instant));
@@ -294,6 +295,11 @@ fn happening(pattern: &Pattern) -> Insight {
         }
         Pattern::Event { name, .. } => name.insight(),
     }
+}
+
+/// Returns `true` for a state in a plan that a remote flight controller does not report.
+fn is_of_another_plan(step: &StateStep) -> bool {
+    matches!(step, StateStep::Enter { source: Some(source), .. } if *source != PlanSource::Stored)
 }
 
 /// Returns the knowledge that an action needs. The world and the transmitter belong to betadeck. Some faults have no

@@ -149,6 +149,7 @@ pub(crate) fn judged(flight: CheckedFlight, case: &Case, flown: Flown, started: 
     let (judgements, measures) = scenario::judge(case, &flown);
     CheckedFlight {
         reported: flown.reported,
+        firmware: flown.firmware,
         judgements,
         measures,
         hash: flown.trace.hash(),
@@ -227,6 +228,7 @@ pub(super) fn compared(loaded: &Loaded, flights: &[CheckedFlight], is_filtered: 
     let mut compared = Vec::new();
     for scenario in loaded.scenarios.iter().filter(|scenario| !scenario.compares.is_empty()) {
         let own = || flights.iter().filter(|flight| flight.file == scenario.file && flight.repetition == 0);
+        let firmware = own().find_map(|flight| flight.firmware);
         let mut groups: Vec<(&str, u64)> =
             own().map(|flight| (flight.variant.as_str(), flight.seed)).collect();
         groups.sort_unstable();
@@ -257,12 +259,13 @@ pub(super) fn compared(loaded: &Loaded, flights: &[CheckedFlight], is_filtered: 
                     })
                     .collect();
                 let reported = group(seed).map(|flight| flight.reported).min().unwrap_or_default();
-                for compare in &scenario.compares {
+                for compare in scenario.compares.iter().filter(|compare| compare.holds_for(firmware)) {
                     tell(seed, scenario::compare(compare, &names, reported));
                 }
             }
             if whole.is_empty() && !is_filtered {
-                scenario.compares.iter().for_each(|compare| tell(first, compare.never_judged()));
+                let compares = scenario.compares.iter().filter(|compare| compare.holds_for(firmware));
+                compares.for_each(|compare| tell(first, compare.never_judged()));
             }
         }
     }

@@ -82,7 +82,10 @@ fn usual_result(ends: bool, firmware: Option<FirmwareProfile>) -> Expectation {
 }
 
 /// Reads the kind of firmware for which an expectation holds.
-fn read_firmware(table: &TomlTable<'_, '_>, reader: &mut Reader<'_, '_>) -> Option<FirmwareProfile> {
+pub(super) fn read_firmware(
+    table: &TomlTable<'_, '_>,
+    reader: &mut Reader<'_, '_>,
+) -> Option<FirmwareProfile> {
     let value = table.get("firmware")?;
     let word = reader.text(value)?;
     let kind = word.parse().ok();

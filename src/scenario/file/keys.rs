@@ -138,7 +138,7 @@ pub(super) const EXPECT_KEYS: &[&str] = &[
 ];
 
 /// Keys of `[[compare]]`.
-pub(super) const COMPARE_KEYS: &[&str] = &["name", "that"];
+pub(super) const COMPARE_KEYS: &[&str] = &["name", "firmware", "that"];
 
 #[cfg(test)]
 mod tests {

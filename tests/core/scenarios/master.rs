@@ -6,7 +6,7 @@ use std::path::{Path, PathBuf};
 use betadeck_core::scenario::{Air, BuiltinFiles, Case, CaseFlight, Flown, Outcome, Scenario, judge, read};
 use betadeck_core::telemetry::FirmwareProfile;
 
-use super::rig::{case_of, with_settings};
+use super::rig::{builtin, case_of, with_settings};
 
 /// Returns the scenario of a finding in upstream's master.
 #[track_caller]
@@ -39,6 +39,17 @@ fn where_master_breaks_a_property_its_profile_does_and_the_guides_keeps_it() {
         for case in &finding(name).cases {
             assert_ne!(broken(case, FirmwareProfile::Master), [""; 0], "{name} {}", case.name);
             assert_eq!(broken(case, FirmwareProfile::Guide), [""; 0], "{name} {}", case.name);
+        }
+    }
+}
+
+#[test]
+fn the_scenarios_of_the_guide_and_of_built_in_plans_pass_with_their_bounds_for_master() {
+    let guide = (1..=8).map(|number| format!("guide-{number}"));
+    let plans = ["alt-change", "delay", "figure8", "hold-wind", "takeoff", "yaw-rate"].map(str::to_owned);
+    for name in guide.chain(plans) {
+        for case in &builtin(&name).cases {
+            assert_eq!(broken(case, FirmwareProfile::Master), [""; 0], "{name} {}", case.name);
         }
     }
 }
