@@ -87,7 +87,15 @@ impl MavlinkCraft {
     pub fn handle(&mut self, input: Input<'_>, now: Duration) {
         match input {
             Input::Received(bytes) => self.station.receive(now, bytes),
-            Input::Lost(reason) => self.lose(reason),
+            Input::Lost(reason) => {
+                // The next heartbeat makes a new connection, perhaps to another craft.
+                self.station = StationProtocol::new(StationOptions::default());
+                for (_, ticket) in std::mem::take(&mut self.orders) {
+                    let reply = order_reply(OrderEnd::Lost);
+                    self.events.push_back(Event::Answered(ticket, LateAnswer::Cli(reply)));
+                }
+                self.lose(reason);
+            }
             Input::Requested(ticket, request) => self.request(ticket, request),
             // The first heartbeat makes the connection. The others are of executables.
             Input::Connected
@@ -276,6 +284,7 @@ impl MavlinkCraft {
             self.state = RemoteState::Lost;
         }
         self.permission.lost();
+        self.exchange.forget_lines();
         if self.reported_loss.as_deref() != Some(reason) {
             self.reported_loss = Some(reason.to_owned());
             let lost = RemoteNotice::Lost(format!("{}: {reason}.", self.name));

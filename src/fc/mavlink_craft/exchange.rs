@@ -62,6 +62,12 @@ impl Exchange {
         self.lines.push(line);
     }
 
+    /// Forgets the plan that was not sent yet: its permission has ended.
+    pub(super) fn forget_lines(&mut self) {
+        self.lines.clear();
+        self.settings = 0;
+    }
+
     /// Counts a setting of a plan that is not sent.
     pub(super) fn leave_setting_out(&mut self) {
         self.settings += 1;

@@ -247,6 +247,22 @@ fn silence_ends_the_connection_and_its_permission_and_the_craft_comes_back() {
 }
 
 #[test]
+fn a_connection_that_comes_back_at_once_needs_a_new_permission_and_sends_nothing_that_was_begun_before() {
+    let mut rig = Rig::new(Identity::Generic);
+    rig.run(3.0);
+    rig.permit();
+    rig.line("waypoint clear");
+    let before = rig.station.connection();
+    rig.station.handle(Input::Lost("the other end closed the connection"), rig.now);
+    assert_eq!(rig.station.view().state, RemoteState::Lost);
+    rig.run(2.0);
+    assert_eq!((rig.station.view().state, rig.station.access()), (RemoteState::Ready, Access::Reading));
+    assert!(rig.station.connection() > before);
+    assert!(!rig.line("waypoint list").0);
+    assert!(rig.missions.is_empty());
+}
+
+#[test]
 fn values_that_are_no_numbers_are_not_shown() {
     let mut rig = Rig::new(Identity::Generic);
     rig.run(1.0);
