@@ -39,6 +39,8 @@ pub(super) struct Course {
     /// The bearing to the target; `None` within its acceptance radius.
     pub(super) bearing_rad: Option<f64>,
     pub(super) yaw_cap_dps: Option<f64>,
+    /// `true` if the place where the craft stopped is held instead of the target, whose height counts.
+    pub(super) holds: bool,
 }
 
 /// The return home of a fence: the altitude above home, m, and the speed, m/s.
@@ -245,6 +247,7 @@ impl Mission {
             heading_rad,
             bearing_rad: (way.norm() > flown.gate_m).then_some(bearing),
             yaw_cap_dps: self.route.yaw_cap_dps(),
+            holds: false,
         }))
     }
 
@@ -334,6 +337,7 @@ impl Mission {
             heading_rad: None,
             bearing_rad: (way.norm() > params.hold_radius_m()).then(|| bearing_rad(way)),
             yaw_cap_dps: self.route.yaw_cap_dps(),
+            holds: offset.is_none(),
         }))
     }
 
@@ -349,7 +353,7 @@ impl Mission {
             return None;
         }
         let yaw_cap_dps = self.route.yaw_cap_dps();
-        Some(Order::Fly(Course { target, heading_rad: None, bearing_rad: None, yaw_cap_dps }))
+        Some(Order::Fly(Course { target, heading_rad: None, bearing_rad: None, yaw_cap_dps, holds: false }))
     }
 
     /// Goes on to the next positional waypoint, or completes the mission.

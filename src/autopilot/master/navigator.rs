@@ -262,15 +262,23 @@ impl MasterNavigator {
         let (tilt, height, yaw_rate_rps) = match order {
             Order::Fly(course) => {
                 let yaw = self.yaw_rps(course, now, params);
-                let tilt = self.controls.tilt(&course.target.point, Task::Navigate, now, params);
-                (tilt, course.target.height, yaw)
+                let tilt = match course.holds {
+                    true => self.controls.hold_position(now, params),
+                    false => {
+                        self.controls.stop = None;
+                        self.controls.tilt(&course.target.point, Task::Navigate, now, params)
+                    }
+                };
+                // A target that is reached has no vertical speed.
+                let climb_mps = if course.holds { 0.0 } else { course.target.height.climb_mps };
+                (tilt, Height { climb_mps, ..course.target.height }, yaw)
             }
             Order::SearchHeading => {
                 let height = Height { altitude_m: self.controls.held_m.unwrap_or(now.alt_m), climb_mps: 0.0 };
+                self.controls.stop = None;
                 (Vector2::new(SEARCH_DEG.to_radians(), 0.0), height, Some(0.0))
             }
         };
-        self.controls.stop = None;
         let most = params.climb_rate_mps();
         let [sink, climb] =
             self.mission.rescue().map_or([most, most], |rescue| [rescue.descend_mps, rescue.climb_mps]);
