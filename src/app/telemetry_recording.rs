@@ -57,6 +57,7 @@ async fn pass_on(
                 up.write(now, &bytes, &mut log);
                 to.send(bytes).await.is_ok()
             }
+            () = incoming.closed() => false,
             else => false,
         };
         if let Some(Err(error)) = file.as_mut().map(|file| file.write_all(&log)) {

@@ -1,5 +1,6 @@
 //! Ground stations of others at the door: pymavlink, MAVProxy and MAVSDK fly the craft as each identity. They run if the Python
 //! of `BETADECK_PYTHON`, or else `python3`, has them; `.ci/run` installs them where it can.
+#![allow(clippy::print_stderr, reason = "a test that is skipped says so, and the others print their logs")]
 
 use std::process::Command;
 
