@@ -355,7 +355,7 @@ fn telemetry_logs_of_other_autopilots_are_shown_with_their_own_modes() {
             terminal.until("the craft on its way", |terminal| {
                 let screen = terminal.screen();
                 screen.contains("REPLAY")
-                    && ["◇1 FLYBY", "━━", "< > 10 s"].iter().all(|text| screen.contains(text))
+                    && ["◇1 FLYBY", "━━", "step  e end"].iter().all(|text| screen.contains(text))
             });
             insta::assert_snapshot!(format!("{name}_{columns}x{rows}"), terminal.screen());
             terminal.send("q");

